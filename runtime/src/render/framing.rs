@@ -45,9 +45,9 @@ impl<'a> Frame<'a> {
         let Some(bounds) = tight.outer else { return Ok(None) };
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
-        let up = render.view.upwards();
+        let up = render.view.upwards(renderer.tree().orientation());
         let view = render.view.about(renderer.tree().origin());
-        let camera = view.camera(render.aspect(), &corners)?;
+        let camera = view.camera(render.aspect(), &corners, renderer.tree().orientation())?;
         let mut frame = Self {
             render,
             renderer,
@@ -72,7 +72,10 @@ impl<'a> Frame<'a> {
         let places = coarse.as_ref().map(|coarse| frame.places(coarse, &tight)).transpose()?.flatten();
         if is_framed {
             match &places {
-                Some(places) => frame.camera = frame.view.camera(render.aspect(), places)?,
+                Some(places) => {
+                    frame.camera =
+                        frame.view.camera(render.aspect(), places, renderer.tree().orientation())?
+                }
                 None => frame.fit(&corners)?,
             }
         }
@@ -83,12 +86,7 @@ impl<'a> Frame<'a> {
         });
         frame.set_tolerance(render.size[1], render.view.zoom, nearest)?;
         if let Some(coarse) = coarse.filter(|_| frame.is_guided()) {
-            let mut cell = render.quality.cell() * frame.pixel;
-            if render.quality == Quality::Draft {
-                let pixels = f64::from(render.size[0]) * f64::from(render.size[1]);
-                let ample = coarse.cell_for(DRAFT_TRIANGLES * pixels);
-                cell = ample.clamp(cell, DRAFT_COARSER * cell);
-            }
+            let cell = frame.guide_cell(&coarse);
             let is_lit = render.quality != Quality::Draft && render.mode == RenderMode::Shaded;
             frame.guide =
                 Guide::new(renderer, (&bounds, &coarse), cell, (up, is_lit), &mut |part| telling.tell(part))?;
@@ -104,6 +102,16 @@ impl<'a> Frame<'a> {
         }
         frame.check_eye()?;
         Ok(Some(frame))
+    }
+
+    /// The edge of the cells of the mesh that guides rays.
+    fn guide_cell(&self, coarse: &CoarseMesh) -> f64 {
+        let cell = self.render.quality.cell() * self.pixel;
+        if self.render.quality != Quality::Draft {
+            return cell;
+        }
+        let pixels = self.render.size.map(f64::from).iter().product::<f64>();
+        coarse.cell_for(DRAFT_TRIANGLES * pixels).clamp(cell, DRAFT_COARSER * cell)
     }
 
     /// Whether a mesh guides the rays of the picture.
@@ -202,7 +210,7 @@ impl<'a> Frame<'a> {
     /// the whole model.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
         let view = View { zoom: 1.0, ..self.view };
-        self.camera = view.camera(self.render.aspect(), corners)?;
+        self.camera = view.camera(self.render.aspect(), corners, self.renderer.tree().orientation())?;
         self.set_tolerance(SCOUTS, 1.0, None)?;
         let aspect = self.render.aspect();
         let [columns, rows] = [aspect.min(1.0), (1.0 / aspect).min(1.0)]
@@ -220,7 +228,7 @@ impl<'a> Frame<'a> {
         let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
         let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
-        self.camera = self.view.camera(aspect, points)?;
+        self.camera = self.view.camera(aspect, points, self.renderer.tree().orientation())?;
         Ok(())
     }
 

@@ -13,7 +13,6 @@ use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::lights::{KEY_SPREAD, sky, sky_above};
-use super::look::segment;
 use super::noise::{Sequence, above, around};
 use super::report::Rays;
 use super::vector::{Vector, along, dot};
@@ -214,7 +213,7 @@ fn blocked(
     *count += some.len() as u64;
     let found = match lit {
         Some((hierarchy, cell)) => {
-            let segments: Vec<RayPart> = some.iter().map(segment).collect();
+            let segments: Vec<RayPart> = some.iter().map(RayPart::of).collect();
             hierarchy.any_of(&segments, (BURIED * cell) as f32)
         }
         None => {

@@ -8,7 +8,6 @@
 //!
 //! Rays whose steps do not end near a place of the surface are traced exactly.
 
-use super::boxes::RayPart;
 use super::cast::{CastHit, Meetings, SurfacePaint, cast, cuts};
 use super::color::Rgb;
 use super::error::RenderError;
@@ -37,15 +36,6 @@ struct Approach {
     way: f64,
     /// The triangle that the ray meets.
     triangle: u32,
-}
-
-/// The part of a ray in its span, in f32.
-pub fn segment(ray: &Ray) -> RayPart {
-    RayPart {
-        origin: along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32),
-        direction: ray.direction.map(|x| x as f32),
-        reach: (ray.span[1] - ray.span[0]) as f32,
-    }
 }
 
 /// Finds the first hits of rays, led by where they meet a mesh. Directions are unit vectors.

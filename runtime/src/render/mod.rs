@@ -16,6 +16,7 @@
 //! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
 //! come from sequences that each pixel shifts by a function of its place alone.
 
+mod area;
 mod beam;
 mod boxes;
 mod camera;
@@ -60,10 +61,11 @@ use jbt_model::check::CheckedTree;
 use crate::compiler::Compiler;
 use crate::job::{Hook, Job};
 
+use area::TileArea;
 use develop::{Gathered, develop};
 use frame::Frame;
 use telling::Telling;
-use tile::{Tile, TileArea};
+use tile::Tile;
 
 /// The number of tiles between two reports of progress.
 const STRIDE: usize = 32;

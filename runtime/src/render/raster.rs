@@ -1,7 +1,7 @@
 //! Where the rays of a picture's samples meet a mesh first, by filling triangles instead of following rays.
 //!
 //! ```text
-//! vertices in the axes of the camera ── triangles in bins, one for each tile          (Raster)
+//! vertices in the axes of the camera ── triangles in bins, one for each tile          (MeshRaster)
 //!
 //! a tile:  for each triangle of its bin, in order            edge 1 >= 0 ┐
 //!            for each sample in the box around it            edge 2 >= 0 ├ and nearer than what is there
@@ -14,14 +14,14 @@
 //! clipped where it passes the eye (Olano and Greer, Triangle scan conversion using 2D homogeneous
 //! coordinates, 1997).
 //!
-//! Only triangles that show the eye their outer side are filled: a ray that begins outside of a closed surface
-//! meets one of them first. Two triangles on an edge have exactly opposite numbers there, and both own the edge: no ray slips through.
-//! Of equally near triangles the first one counts. So answers have the same bits for every instruction set
-//! and any number of threads.
+//! Only triangles that show the eye their outer side are filled: a ray that begins outside of a closed
+//! surface meets one of them first. Two triangles on an edge have exactly opposite numbers there, and both
+//! own the edge: no ray slips through. Of equally near triangles the first one counts. So answers have the
+//! same bits for every instruction set and any number of threads.
 
+use super::area::TileArea;
 use super::boxes::{EightLanes, WIDE};
 use super::camera::Camera;
-use super::tile::TileArea;
 use super::vector::{Vector, cross, dot, length, scale, sub};
 use crate::mesh::Mesh;
 use crate::parallel::*;
@@ -45,7 +45,7 @@ pub struct MeshMeeting {
 }
 
 /// A mesh in front of a camera, sorted into the tiles of some rows of a picture.
-pub struct Raster<'a> {
+pub struct MeshRaster<'a> {
     camera: &'a Camera,
     size: [u32; 2],
     triangles: &'a [[u32; 3]],
@@ -81,7 +81,7 @@ struct Patch {
     rows: [usize; 2],
 }
 
-impl<'a> Raster<'a> {
+impl<'a> MeshRaster<'a> {
     /// Sorts the triangles of a mesh into tiles, which are [`TileArea::of_rows`] without parts.
     pub fn new(camera: &'a Camera, size: [u32; 2], mesh: &'a Mesh, rows: [u32; 2]) -> Self {
         let Mesh { positions, triangles, .. } = mesh;
@@ -246,7 +246,7 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Where a vertex is in a picture: see [`Raster::places`].
+/// Where a vertex is in a picture: see [`MeshRaster::places`].
 fn place(camera: &Camera, unit: f64, [x, y, z]: Vector) -> [f64; 2] {
     let depth = if camera.orthographic { 1.0 / unit } else { z };
     if depth <= NEAREST && !camera.orthographic {
@@ -331,7 +331,7 @@ mod tests {
                 orthographic,
             };
             let mesh = soup(&mut random, 60);
-            let raster = Raster::new(&camera, SIZE, &mesh, [0, SIZE[1]]);
+            let raster = MeshRaster::new(&camera, SIZE, &mesh, [0, SIZE[1]]);
             let mut hits = 0;
             for parts in [1, 3] {
                 for (number, area) in TileArea::of_rows(SIZE[0], [0, SIZE[1]], 1).iter().enumerate() {
@@ -381,7 +381,7 @@ mod tests {
             [3.0 * angle.cos(), 3.0 * angle.sin(), -0.5]
         }));
         mesh.triangles = (0..400).map(|step| [0, 1 + step, 1 + (step + 1) % 400]).collect();
-        let raster = Raster::new(&camera, [64, 64], &mesh, [0, 64]);
+        let raster = MeshRaster::new(&camera, [64, 64], &mesh, [0, 64]);
         for (number, area) in TileArea::of_rows(64, [0, 64], 1).iter().enumerate() {
             let tile = raster.tile(number, area, 4);
             for sample in 0..area.width * area.height * 16 {

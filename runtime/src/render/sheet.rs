@@ -12,6 +12,7 @@
 
 use std::time::Instant;
 
+use super::area::TileArea;
 use super::cast::{Meetings, cast};
 use super::develop::Gathered;
 use super::error::RenderError;
@@ -19,12 +20,12 @@ use super::frame::Frame;
 use super::gather::{Light, RayBudget, Spot, gather, unshadowed};
 use super::guide::Guide;
 use super::look::look;
-use super::raster::{MeshMeeting, Raster};
+use super::raster::{MeshMeeting, MeshRaster};
 use super::seen::{SeenKind, SeenPoint};
 use super::settings::{Quality, RenderMode};
 use super::smooth::{SMOOTH_ROWS, smooth};
 use super::telling::Telling;
-use super::tile::{Tile, TileArea};
+use super::tile::Tile;
 use super::vector::{length, sub};
 use crate::parallel::*;
 use crate::trace::Ray;
@@ -47,7 +48,7 @@ struct PictureSheet<'a> {
     frame: &'a Frame<'a>,
     guide: &'a Guide,
     /// The mesh in the tiles; `None` where it does not lead the eye.
-    raster: Option<Raster<'a>>,
+    raster: Option<MeshRaster<'a>>,
     /// The first row, and the row behind the last one.
     rows: [u32; 2],
     tiles: Vec<TileArea>,
@@ -185,7 +186,8 @@ impl<'a> PictureSheet<'a> {
     fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Self {
         let width = frame.render.size[0];
         let tiles = TileArea::of_rows(width, rows, 1);
-        let raster = guide.leads.then(|| Raster::new(&frame.camera, frame.render.size, &guide.mesh, rows));
+        let raster =
+            guide.leads.then(|| MeshRaster::new(&frame.camera, frame.render.size, &guide.mesh, rows));
         Self {
             frame,
             guide,
