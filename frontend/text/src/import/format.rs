@@ -69,6 +69,8 @@ macro_rules! formats {
 formats! {
     /// A ParsIP scene: see [`parsip`](fn@super::parsip).
     Parsip = parsip,
+    /// A BRL-CAD database: see [`brlcad`](fn@super::brlcad).
+    Brlcad = brlcad,
     /// A program of instructions: see [`vm`](fn@super::vm).
     Vm = vm,
     /// The [text format](crate) of jbt; whatever no other format recognizes.
