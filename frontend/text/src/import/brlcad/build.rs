@@ -16,13 +16,15 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
 
 use super::database::{Combination, Content, Database, Properties, SetStep};
-use super::leaf::{self, Flaw};
+use super::leaf::{self, Flaw, LeafStyle};
 use super::operand::Operand;
 use super::solid::SolidKind;
 use crate::color::linear;
 
 /// How thick the field of a half space is, for the size of the largest solid.
 const HALF_THICKNESS: f64 = 0.1;
+/// How many members of combinations are worth one formula for all solids.
+const MANY: usize = 256;
 /// How far from a rotation counts as one.
 const RIGID: f64 = 1e-6;
 /// Names of a path that are shown from either end.
@@ -34,6 +36,7 @@ pub(super) fn build(database: &mut Database, object: Option<&str>) -> Option<Tre
     let count = database.objects.len();
     let mut builder = Builder {
         reach: reach(database),
+        style: if database.members > MANY { LeafStyle::Alike } else { LeafStyle::Plain },
         states: std::iter::repeat_with(<[ObjectState; 2]>::default).take(count).collect(),
         path: Vec::new(),
         nodes: 0,
@@ -96,7 +99,7 @@ fn reach(database: &Database) -> f64 {
     for object in &database.objects {
         if let Content::Solid(solid) = &object.content
             && !matches!(solid.kind, SolidKind::Half | SolidKind::Planes)
-            && let Ok(leaf) = leaf::leaf(solid, 1.0)
+            && let Ok(leaf) = leaf::leaf(solid, 1.0, LeafStyle::Plain)
             && leaf.bounds.is_finite()
         {
             let half = 0.5 * (leaf.bounds.max - leaf.bounds.min);
@@ -149,6 +152,7 @@ struct Note {
 struct Builder<'a, 'b> {
     database: &'a mut Database<'b>,
     reach: f64,
+    style: LeafStyle,
     states: Vec<[ObjectState; 2]>,
     /// The combinations that are open, from the root down.
     path: Vec<u32>,
@@ -223,7 +227,7 @@ impl Builder<'_, '_> {
                 }
                 return Some(());
             }
-            Content::Solid(solid) => match leaf::leaf(solid, self.reach) {
+            Content::Solid(solid) => match leaf::leaf(solid, self.reach, self.style) {
                 Ok(leaf) => {
                     self.nodes += leaf.nodes;
                     Built { tree: Some(leaf.tree), color: None, has_radius: leaf.has_radius }

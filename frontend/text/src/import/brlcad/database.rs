@@ -17,7 +17,7 @@ pub(super) struct Database<'a> {
     /// Colours of regions that state none, by ranges of region numbers.
     pub(super) palette: Vec<PaletteRange>,
     /// Members of all combinations so far.
-    members: usize,
+    pub(super) members: usize,
     pub(super) errors: Report,
     pub(super) warnings: Report,
 }

@@ -12,6 +12,7 @@
 mod block;
 mod cone;
 mod metaball;
+mod parts;
 mod pipe;
 mod quadric;
 mod round;
@@ -31,6 +32,15 @@ use super::solid::{Solid, SolidKind};
 const SMALLEST: f64 = 1e-12;
 const LARGEST: f64 = 1e12;
 
+/// How leaves are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum LeafStyle {
+    /// Each as short as it can be.
+    Plain,
+    /// With one formula for as many kinds as possible: see [`parts`].
+    Alike,
+}
+
 /// A solid as a tree.
 #[derive(Clone)]
 pub(super) struct Leaf {
@@ -47,28 +57,28 @@ pub(super) struct Leaf {
 pub(super) type Flaw = String;
 
 /// The leaf of a solid; `reach` is about the size of the model, which gives half spaces a thickness.
-pub(super) fn leaf(solid: &Solid, reach: f64) -> Result<Leaf, Flaw> {
+pub(super) fn leaf(solid: &Solid, reach: f64, style: LeafStyle) -> Result<Leaf, Flaw> {
     let n = &solid.numbers[..];
     if let Some(large) = n.iter().find(|number| number.abs() > LARGEST) {
         return Err(format!("one of its numbers is {large}"));
     }
     let v = |at: usize| DVec3::new(n[3 * at], n[3 * at + 1], n[3 * at + 2]);
     match solid.kind {
-        SolidKind::Ellipsoid => round::ellipsoid(v(0), [v(1), v(2), v(3)]),
+        SolidKind::Ellipsoid => round::ellipsoid(v(0), [v(1), v(2), v(3)], style),
         SolidKind::Superellipsoid => round::superellipsoid(v(0), [v(1), v(2), v(3)], [n[12], n[13]]),
-        SolidKind::Torus => round::torus(v(0), v(1), n[6], n[7]),
-        SolidKind::EllipticalTorus => round::elliptical_torus(v(0), v(1), v(2), n[9], n[10]),
+        SolidKind::Torus => round::torus(v(0), v(1), [n[6], n[7]], style),
+        SolidKind::EllipticalTorus => round::elliptical_torus(v(0), v(1), v(2), [n[9], n[10]], style),
         SolidKind::Particle => round::particle(v(0), v(1), n[6], n[7]),
-        SolidKind::Cone => cone::cone(v(0), v(1), [v(2), v(3)], [v(4), v(5)]),
-        SolidKind::Block => block::block(&[0, 1, 2, 3, 4, 5, 6, 7].map(v)),
+        SolidKind::Cone => cone::cone(v(0), v(1), [[v(2), v(3)], [v(4), v(5)]], style),
+        SolidKind::Block => block::block(&[0, 1, 2, 3, 4, 5, 6, 7].map(v), style),
         SolidKind::Half => block::half(v(0), n[3], reach),
         SolidKind::Planes => block::planes(n.as_chunks().0, reach),
         SolidKind::ParabolicCylinder => quadric::parabolic_cylinder(v(0), v(1), v(2), n[9]),
         SolidKind::HyperbolicCylinder => quadric::hyperbolic_cylinder(v(0), v(1), v(2), n[9], n[10]),
         SolidKind::Paraboloid => quadric::paraboloid(v(0), v(1), v(2), [n[9], n[10]]),
-        SolidKind::Hyperboloid => quadric::hyperboloid(v(0), v(1), v(2), [n[9], n[10]], n[11]),
+        SolidKind::Hyperboloid => quadric::hyperboloid(v(0), v(1), v(2), [n[9], n[10], n[11]], style),
         SolidKind::Waist => quadric::waist(v(0), v(1), v(2), n[9], n[10]),
-        SolidKind::Pipe => pipe::pipe(n.as_chunks().0),
+        SolidKind::Pipe => pipe::pipe(n.as_chunks().0, style),
         SolidKind::Metaball => metaball::metaball(n[0], n[1], n[2..].as_chunks().0),
     }
 }

@@ -194,12 +194,7 @@ impl<'a> TextReader<'a> {
         Ok(numbers)
     }
 
-    fn solid(
-        &self,
-        row: &'static SolidRow,
-        kind: Span,
-        pairs: &[(&'a [u8], Span)],
-    ) -> Result<Solid, Broken> {
+    fn solid(&self, row: &'static SolidRow, kind: Span, pairs: &[(&'a [u8], Span)]) -> Result<Solid, Broken> {
         let values: HashMap<&[u8], Span> = pairs.iter().copied().collect();
         let value = |key: &str, count: usize| -> Result<Vec<f64>, Broken> {
             let Some(&found) = values.get(key.as_bytes()) else {

@@ -3,11 +3,11 @@
 use glam::DVec3;
 use jbt_ir::limits::MAX_PLANES;
 use jbt_model::bounds::Bounds;
-use jbt_model::builder::{Term, x, y, z};
 use jbt_model::skeleton::HalfSpace;
 use jbt_model::tree::Tree;
 
-use super::{Flaw, Leaf, direction, formula, frame, grown, least};
+use super::parts::{HalfField, Parts};
+use super::{Flaw, Leaf, LeafStyle, direction, formula, frame, grown};
 
 /// The faces of a block, by its points.
 const FACES: [[usize; 4]; 6] =
@@ -29,9 +29,9 @@ impl Plane {
 }
 
 /// The convex solid of eight points, of which several may be one.
-pub(super) fn block(points: &[DVec3; 8]) -> Result<Leaf, Flaw> {
+pub(super) fn block(points: &[DVec3; 8], style: LeafStyle) -> Result<Leaf, Flaw> {
     let bounds = Bounds::around(points.iter().copied());
-    if let Some(leaf) = slanted_box(points, bounds) {
+    if let Some(leaf) = slanted_box(points, bounds, style) {
         return Ok(leaf);
     }
     let size = bounds.longest_side();
@@ -65,11 +65,11 @@ pub(super) fn block(points: &[DVec3; 8]) -> Result<Leaf, Flaw> {
         return Err("it has no thickness".to_owned());
     }
     let scale = 0.5 / thickness;
-    let inside = faces.iter().map(|plane| {
-        let n = plane.normal * scale;
-        (0.5 + depth(plane) * scale) - (n.x * x() + n.y * y() + n.z * z())
-    });
-    let inside = inside.reduce(|least, term| least.min(term)).unwrap_or_else(|| Term::from(0.0));
+    let field = |plane: &Plane| HalfField {
+        slope: (plane.normal * scale).to_array(),
+        offset: 0.5 + depth(plane) * scale,
+    };
+    let inside = Parts { planes: faces.iter().map(field).collect(), ..Parts::default() }.field(style);
     // Twice as large about the middle it would hold all of the field; sharp corners are cut off before.
     let (low, high) = (bounds.min - middle, bounds.max - middle);
     let margin = DVec3::splat(2.0 * thickness);
@@ -95,7 +95,7 @@ fn plane(corners: &[DVec3; 4], middle: DVec3, size: f64) -> Option<Plane> {
 }
 
 /// Eight points that are the corners of a box, right or slanted: one formula in the frame of its edges.
-fn slanted_box(points: &[DVec3; 8], bounds: Bounds) -> Option<Leaf> {
+fn slanted_box(points: &[DVec3; 8], bounds: Bounds, style: LeafStyle) -> Option<Leaf> {
     let edges = [points[1] - points[0], points[3] - points[0], points[4] - points[0]];
     let [a, b, c] = edges;
     let near = NEAR * bounds.longest_side();
@@ -111,8 +111,8 @@ fn slanted_box(points: &[DVec3; 8], bounds: Bounds) -> Option<Leaf> {
     let half = [b.cross(c), c.cross(a), a.cross(b)].map(|side| 0.5 * volume / side.length());
     let thickness = half.iter().copied().fold(f64::INFINITY, f64::min);
     let sharp = half.map(|half| 0.5 * half / thickness);
-    let side = |axis: usize, coordinate: Term| (0.5 + sharp[axis]) - sharp[axis] * coordinate.abs();
-    let inside = least([side(0, x()), side(1, y()), side(2, z())]);
+    let slabs = sharp.into_iter().enumerate().collect();
+    let inside = Parts { slabs, ..Parts::default() }.field(style);
     let reach = DVec3::from_array(sharp.map(|sharp| 1.0 + 0.5 / sharp));
     let tree = formula(inside, Bounds::new(-reach, reach), &frame);
     Some(Leaf { tree, bounds, nodes: 2, has_radius: false })

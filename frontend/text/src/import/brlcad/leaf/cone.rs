@@ -4,7 +4,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use jbt_model::bounds::Bounds;
 use jbt_model::builder::{Term, x, y, z};
 
-use super::{Flaw, Leaf, direction, formula, length};
+use super::parts::{Parts, Round};
+use super::{Flaw, Leaf, LeafStyle, direction, formula, length};
 
 /// How thin a cone is at its tip, for its size: a formula that divides by the width needs one.
 const TIP: f64 = 1e-6;
@@ -15,7 +16,7 @@ const TIP: f64 = 1e-6;
 /// With `t = N . q / N . H`, `N = A x B` and `w = q - t H`, a point is inside for t in [0, 1] and
 /// `(w . A / |A| a)^2 + (w . B / |B| b)^2 <= 1`, where a and b go evenly from the lengths of A and B to those
 /// of C and D.
-pub(super) fn cone(v: DVec3, h: DVec3, base: [DVec3; 2], top: [DVec3; 2]) -> Result<Leaf, Flaw> {
+pub(super) fn cone(v: DVec3, h: DVec3, [base, top]: [[DVec3; 2]; 2], style: LeafStyle) -> Result<Leaf, Flaw> {
     let lengths = |pair: [DVec3; 2]| pair.map(DVec3::length);
     let ([a, b], [c, d]) = (lengths(base), lengths(top));
     // A tip has no direction, and the other end has.
@@ -41,36 +42,33 @@ pub(super) fn cone(v: DVec3, h: DVec3, base: [DVec3; 2], top: [DVec3; 2]) -> Res
     // As thick as the narrower way, at the wider end.
     let thickness = wide_a.min(wide_b).min(half_height);
     let (sharp, flat) = (0.5 * wide_a.min(wide_b) / thickness, 0.5 * half_height / thickness);
-    let ends = (0.5 + flat) - flat * z().abs();
-    let side = side([a / wide_a, c / wide_a], [b / wide_b, d / wide_b], sharp);
+    let (along_a, along_b) = ([a / wide_a, c / wide_a], [b / wide_b, d / wide_b]);
+    let mut parts = Parts { slabs: vec![(2, flat)], ..Parts::default() };
+    let is_even = (along_a[0] - along_b[0]).abs() + (along_a[1] - along_b[1]).abs() < 1e-12;
+    let inside = if is_even {
+        parts.round = Some(even(along_a, sharp));
+        parts.field(style)
+    } else {
+        parts.field(LeafStyle::Plain).min(uneven(along_a, along_b, sharp))
+    };
     let beyond = 1.0 + 0.5 / flat;
     let steepest = (1.0 - a.min(c) / wide_a).max(1.0 - b.min(d) / wide_b);
     let out = 1.0 + 0.5 / sharp + steepest * 0.25 / flat;
     let within = Bounds::new(DVec3::new(-out, -out, -beyond), DVec3::new(out, out, beyond));
-    let tree = formula(ends.min(side), within, &frame);
+    let tree = formula(inside, within, &frame);
     let bounds = ellipse(v, first * a, second * b).hull(ellipse(v + h, first * c, second * d));
     Ok(Leaf { tree, bounds, nodes: 2, has_radius: false })
 }
 
-/// Above 1/2 where a point is within the ellipse of its height. Half axes at both ends are fractions of the
-/// wider end.
-fn side([a, c]: [f64; 2], [b, d]: [f64; 2], sharp: f64) -> Term {
-    let even = |from: f64, to: f64, scale: f64| {
-        let (middle, slope) = (0.5 * (from + to) * scale, 0.5 * (to - from) * scale);
-        (middle, slope)
-    };
-    if (a - b).abs() + (c - d).abs() < 1e-12 {
-        let from_axis = sharp * length(&x(), &y());
-        if (a - c).abs() < 1e-12 {
-            return (0.5 + sharp) - from_axis;
-        }
-        let (middle, slope) = even(a, c, sharp);
-        return (0.5 + middle) + slope * z() - from_axis;
-    }
-    let wide = |from: f64, to: f64| {
-        let (middle, slope) = even(from, to, 1.0);
-        (middle + slope * z()).max(TIP)
-    };
+/// The side of a cone whose ellipses are alike. Half axes at both ends are fractions of the wider end.
+fn even([a, c]: [f64; 2], sharp: f64) -> Round {
+    let (middle, slope) = (0.5 * (a + c), if (a - c).abs() < 1e-12 { 0.0 } else { 0.5 * (c - a) });
+    Round { first: [sharp, 0.0, 0.0], second: [0.0; 3], height: [-slope * sharp, 0.5 + middle * sharp] }
+}
+
+/// Above 1/2 where a point is within the ellipse of its height.
+fn uneven([a, c]: [f64; 2], [b, d]: [f64; 2], sharp: f64) -> Term {
+    let wide = |from: f64, to: f64| (0.5 * (from + to) + 0.5 * (to - from) * z()).max(TIP);
     let (wide_x, wide_y) = (wide(a, c), wide(b, d));
     let from_axis = length(&x(), &(y() * (&wide_x / wide_y)));
     0.5 + sharp * (wide_x - from_axis)

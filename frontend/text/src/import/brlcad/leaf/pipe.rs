@@ -18,7 +18,7 @@ use jbt_model::builder::{x, y, z};
 use jbt_model::skeleton::Point;
 use jbt_model::tree::Tree;
 
-use super::{Flaw, Leaf, cone, formula, frame, grown, length, upright};
+use super::{Flaw, Leaf, LeafStyle, cone, formula, frame, grown, length, upright};
 
 /// The smallest turn, in radians, that is one.
 const SMALLEST_TURN: f64 = 1e-6;
@@ -38,13 +38,13 @@ enum Piece {
 }
 
 /// A pipe through points.
-pub(super) fn pipe(points: &[PipePoint]) -> Result<Leaf, Flaw> {
+pub(super) fn pipe(points: &[PipePoint], style: LeafStyle) -> Result<Leaf, Flaw> {
     if points.len() < 2 || points.len() > MAX_SKELETON_POINTS {
         return Err(format!("it has {} points, and 2 to {MAX_SKELETON_POINTS} are read", points.len()));
     }
     let outer = pieces(points, 4, 0.0);
     let bounds = outer.iter().fold(Bounds::EMPTY, |all, piece| all.hull(piece.bounds()));
-    let mut trees = trees(&outer)?;
+    let mut trees = trees(&outer, style)?;
     if trees.is_empty() {
         return Err("it has no thickness".to_owned());
     }
@@ -52,7 +52,7 @@ pub(super) fn pipe(points: &[PipePoint]) -> Result<Leaf, Flaw> {
     let mut tree = union(&mut trees);
     // The hole goes on beyond the ends, so that no skin is left there.
     let widest = points.iter().map(|point| point[4]).fold(0.0, f64::max);
-    let mut holes = self::trees(&pieces(points, 3, widest))?;
+    let mut holes = self::trees(&pieces(points, 3, widest), style)?;
     if !holes.is_empty() {
         nodes += 2 * holes.len() + 2;
         tree = Tree::difference([tree, union(&mut holes)]);
@@ -87,12 +87,14 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
                 pieces.push(Piece::Joint { at: from, radius: radius.min(length) });
             }
             if index == 1 {
-                from -= ahead * drawn_out;
-                radii[0] = (radii[0] - slope * drawn_out).max(0.0);
+                let by = drawn(radii[0], -slope, drawn_out);
+                from -= ahead * by;
+                radii[0] -= slope * by;
             }
             if index == last {
-                to += ahead * drawn_out;
-                radii[1] = (radii[1] + slope * drawn_out).max(0.0);
+                let by = drawn(radii[1], slope, drawn_out);
+                to += ahead * by;
+                radii[1] += slope * by;
             }
             pieces.push(Piece::Straight { from, to, radii });
         }
@@ -120,6 +122,11 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
         joins = true;
     }
     narrowed(pieces)
+}
+
+/// How far an end can be drawn out on which the radius changes: to its tip.
+fn drawn(radius: f64, slope: f64, by: f64) -> f64 {
+    if slope < 0.0 { by.min(radius / -slope) } else { by }
 }
 
 /// Joints within both of their neighbours: within a length of each, and within a cone that narrows.
@@ -218,12 +225,12 @@ impl Piece {
         }
     }
 
-    fn tree(self) -> Result<Option<Tree>, Flaw> {
+    fn tree(self, style: LeafStyle) -> Result<Option<Tree>, Flaw> {
         Ok(Some(match self {
             Self::Straight { from, to, radii: [a, b] } => {
                 let along = to - from;
                 let [first, second, _] = upright(along.normalize_or_zero());
-                cone::cone(from, along, [first * a, second * a], [first * b, second * b])?.tree
+                cone::cone(from, along, [[first * a, second * a], [first * b, second * b]], style)?.tree
             }
             Self::Joint { radius, .. } if radius <= 0.0 => return Ok(None),
             Self::Joint { at, radius } => grown(Point { at }, radius),
@@ -250,10 +257,10 @@ fn arc(frame: &DAffine3, half_angle: f64, bend: f64, radius: f64) -> Tree {
     formula(tube.min(wedge), within, frame)
 }
 
-fn trees(pieces: &[Piece]) -> Result<Vec<Tree>, Flaw> {
+fn trees(pieces: &[Piece], style: LeafStyle) -> Result<Vec<Tree>, Flaw> {
     let mut trees = Vec::with_capacity(pieces.len());
     for piece in pieces {
-        trees.extend(piece.tree()?);
+        trees.extend(piece.tree(style)?);
     }
     Ok(trees)
 }

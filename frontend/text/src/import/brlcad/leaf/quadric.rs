@@ -7,7 +7,8 @@ use glam::DVec3;
 use jbt_model::bounds::Bounds;
 use jbt_model::builder::{Term, x, y, z};
 
-use super::{Flaw, Leaf, direction, frame, framed, least, length, positive};
+use super::parts::{HalfField, Parts, Round};
+use super::{Flaw, Leaf, LeafStyle, direction, frame, framed, least, length, positive};
 
 /// How sharply the sides of a frame of these sizes bound a field: one half over the thickness, for each.
 fn sharpness<const N: usize>(sizes: [f64; N]) -> [f64; N] {
@@ -36,14 +37,25 @@ pub(super) fn paraboloid(v: DVec3, h: DVec3, a: DVec3, [r_1, r_2]: [f64; 2]) -> 
 
 /// The same with a hyperbola, whose asymptotes meet at the distance c above the apex:
 /// `(1 + 2 c) (x^2 + y^2) <= (1 + c - z)^2 - c^2`, c as a fraction of the height.
-pub(super) fn hyperboloid(v: DVec3, h: DVec3, a: DVec3, [r_1, r_2]: [f64; 2], c: f64) -> Result<Leaf, Flaw> {
+pub(super) fn hyperboloid(
+    v: DVec3,
+    h: DVec3,
+    a: DVec3,
+    [r_1, r_2, c]: [f64; 3],
+    style: LeafStyle,
+) -> Result<Leaf, Flaw> {
     let (r_1, r_2) = (positive("r_1", r_1)?, positive("r_2", r_2)?);
     let [first, second] = axes(h, a, "A")?;
     let frame = frame(v, [first * r_1, second * r_2, h])?;
     let [side, base] = sharpness([0.5 * r_1.min(r_2), 0.5 * h.length()]);
     let c = asymptotes(c, h.length())?;
-    let bowl = hyperbola(c, side, &(x().square() + y().square()));
-    let inside = least([bowl, 0.5 + base * z()]);
+    let round = Round {
+        first: [side * (1.0 + 2.0 * c).sqrt(), 0.0, 0.0],
+        second: [0.0, 0.0, side * c],
+        height: [side, 0.5 + side * (1.0 + c)],
+    };
+    let planes = vec![HalfField { slope: [0.0, 0.0, -base], offset: 0.5 }];
+    let inside = Parts { round: Some(round), planes, ..Parts::default() }.field(style);
     let (above, below) = (0.5 / side, 0.5 / base);
     Ok(bowl_leaf(inside, &frame, hyperbola_width(c, below + above), [below, above]))
 }
@@ -54,8 +66,8 @@ fn asymptotes(c: f64, height: f64) -> Result<f64, Flaw> {
 }
 
 /// Above 1/2 below the hyperbola that is 0 high at distance 1, and 1 high at distance 0.
-fn hyperbola(c: f64, side: f64, squared: &Term) -> Term {
-    let surface = ((1.0 + 2.0 * c) * squared + c * c).sqrt();
+fn hyperbola(c: f64, side: f64) -> Term {
+    let surface = ((1.0 + 2.0 * c) * y().square() + c * c).sqrt();
     (0.5 + side * (1.0 + c)) - side * (z() + surface)
 }
 
@@ -83,7 +95,7 @@ pub(super) fn parabolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64) -> Result
 pub(super) fn hyperbolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64, c: f64) -> Result<Leaf, Flaw> {
     let (frame, [side, base, ends]) = cylinder(v, h, b, r)?;
     let c = asymptotes(c, b.length())?;
-    let bow = hyperbola(c, side, &y().square());
+    let bow = hyperbola(c, side);
     let inside = least([bow, 0.5 + base * z(), (0.5 + ends) - ends * x().abs()]);
     let (above, below) = (0.5 / side, 0.5 / base);
     Ok(bow_leaf(inside, &frame, 1.0 + 0.5 / ends, hyperbola_width(c, below + above), [below, above]))

@@ -6,16 +6,25 @@ use jbt_model::builder::{x, y, z};
 use jbt_model::skeleton::{Point, Ring, Segment, Superquadric};
 use jbt_model::tree::Tree;
 
-use super::{Flaw, Leaf, centered, direction, formula, frame, framed, grown, length, positive, upright};
+use super::parts::{Parts, Round};
+use super::{
+    Flaw, Leaf, LeafStyle, centered, direction, formula, frame, framed, grown, length, positive, upright,
+};
 
 /// How nearly equal what counts as equal is.
 const NEAR: f64 = 1e-12;
 
 /// All points `p` with `sum (q . A / A . A)^2 <= 1`, where `q = p - V`.
-pub(super) fn ellipsoid(center: DVec3, axes: [DVec3; 3]) -> Result<Leaf, Flaw> {
+pub(super) fn ellipsoid(center: DVec3, axes: [DVec3; 3], style: LeafStyle) -> Result<Leaf, Flaw> {
     let lengths = lengths(axes)?;
     let bounds = around(center, axes);
     let [a, b, c] = lengths;
+    if style == LeafStyle::Alike {
+        let ball = Round { first: [0.5, 0.0, 0.0], second: [0.0, 0.5, 0.0], height: [0.0, 1.0] };
+        let inside = Parts { round: Some(ball), ..Parts::default() }.field(style);
+        let leaf = framed(inside, centered([2.0; 3]), &frame(center, axes)?, Bounds::EMPTY);
+        return Ok(Leaf { bounds, has_radius: false, ..leaf });
+    }
     if (a - b).abs() <= NEAR * a && (a - c).abs() <= NEAR * a {
         let tree = grown(Point { at: center }, a);
         return Ok(Leaf { tree, bounds, nodes: 1, has_radius: false });
@@ -63,27 +72,51 @@ fn corners(half: &[DVec3; 3]) -> [DVec3; 8] {
 }
 
 /// All points within `r_h` of the circle of radius `r_a` about H.
-pub(super) fn torus(center: DVec3, normal: DVec3, r_a: f64, r_h: f64) -> Result<Leaf, Flaw> {
+pub(super) fn torus(
+    center: DVec3,
+    normal: DVec3,
+    [r_a, r_h]: [f64; 2],
+    style: LeafStyle,
+) -> Result<Leaf, Flaw> {
     let (normal, _) = direction("H", normal)?;
     let (r_a, r_h) = (positive("r_a", r_a)?, positive("r_h", r_h)?);
-    let tree = grown(Ring { center, normal, radius: r_a }, r_h);
     let half = normal.map(|n| (1.0 - n * n).max(0.0).sqrt() * r_a + r_h);
-    Ok(Leaf { tree, bounds: Bounds::new(center - half, center + half), nodes: 1, has_radius: true })
+    let bounds = Bounds::new(center - half, center + half);
+    if style == LeafStyle::Alike {
+        let thin = 0.5 / r_h;
+        let tube = Round { first: [thin, 0.0, -thin * r_a], second: [0.0, thin, 0.0], height: [0.0, 1.0] };
+        let inside = Parts { round: Some(tube), ..Parts::default() }.field(style);
+        let out = r_a + 2.0 * r_h;
+        let within = centered([out, out, 2.0 * r_h]);
+        let leaf = framed(inside, within, &frame(center, upright(normal))?, Bounds::EMPTY);
+        return Ok(Leaf { bounds, ..leaf });
+    }
+    let tree = grown(Ring { center, normal, radius: r_a }, r_h);
+    Ok(Leaf { tree, bounds, nodes: 1, has_radius: true })
 }
 
 /// An ellipse that goes round an axis at the distance r. C is its longer half axis, as it stands where it
 /// begins, `r_d` the length of the other one.
-pub(super) fn elliptical_torus(v: DVec3, n: DVec3, c: DVec3, r: f64, r_d: f64) -> Result<Leaf, Flaw> {
+pub(super) fn elliptical_torus(
+    v: DVec3,
+    n: DVec3,
+    c: DVec3,
+    [r, r_d]: [f64; 2],
+    style: LeafStyle,
+) -> Result<Leaf, Flaw> {
     let (n, _) = direction("N", n)?;
     let (c, long) = direction("C", c)?;
     let (r, short) = (positive("r", r)?, positive("r_d", r_d)?);
     // The direction of the long axis, outwards and along the axis of the torus.
     let along = c.dot(n).clamp(-1.0, 1.0);
     let out = (1.0 - along * along).sqrt();
-    let (outwards, height) = (length(&x(), &y()) - r, z());
-    let first = (out / long) * &outwards + (along / long) * &height;
-    let second = (-along / short) * outwards + (out / short) * height;
-    let inside = 1.0 - 0.5 * length(&first, &second);
+    let from_ring = |a: f64, b: f64, size: f64| [0.5 * a / size, 0.5 * b / size, -0.5 * a * r / size];
+    let tube = Round {
+        first: from_ring(out, along, long),
+        second: from_ring(-along, out, short),
+        height: [0.0, 1.0],
+    };
+    let inside = Parts { round: Some(tube), ..Parts::default() }.field(style);
     let reach = [(out * long).hypot(along * short), (along * long).hypot(out * short)];
     let frame = frame(v, upright(n))?;
     let around = |scale: f64| centered([r + scale * reach[0], r + scale * reach[0], scale * reach[1]]);
