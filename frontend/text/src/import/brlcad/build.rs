@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::limits::MAX_NODES;
+use jbt_model::affine::map_bounds;
 use jbt_model::bounds::Bounds;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::kind::NodeKind;
@@ -17,7 +18,7 @@ use jbt_model::tree::Tree;
 
 use super::database::{Combination, Content, Database, Properties, SetStep};
 use super::leaf::{self, Flaw, LeafStyle};
-use super::operand::Operand;
+use super::operand::{Operand, Part, Setting};
 use super::solid::SolidKind;
 use crate::color::linear;
 
@@ -47,16 +48,16 @@ pub(super) fn build(database: &mut Database, object: Option<&str>) -> Option<Tre
         database,
     };
     let mut whole = Operand::MISSING;
-    let whole_span = Span::default();
+    let setting = Setting { span: Span::default(), style: builder.style };
     for &root in &roots {
         let root = builder.run(root)?;
-        whole = Operand::combine(SetStep::Union, whole, root, whole_span);
+        whole = Operand::combine(SetStep::Union, whole, root, setting);
     }
     if object.is_none() {
         builder.refuse_circles()?;
     }
     builder.note();
-    let tree = whole.tree(whole_span);
+    let tree = whole.part(setting.span).map(|part| part.tree);
     if tree.is_none() {
         let named = object.map_or_else(|| "the file".to_owned(), |name| format!("`{}`", clip(name)));
         database.errors.add(|| Diagnostic::error(None, format!("{named} has no solid that can be read")));
@@ -122,7 +123,7 @@ enum ObjectState {
 #[derive(Clone)]
 struct Built {
     /// None if it is missing, or nothing is left of it.
-    tree: Option<Tree>,
+    part: Option<Part>,
     /// The first colour in it.
     color: Option<[u8; 3]>,
     /// Whether a solid in it has a radius that belongs to no vector.
@@ -130,7 +131,7 @@ struct Built {
 }
 
 impl Built {
-    const MISSING: Self = Self { tree: None, color: None, has_radius: false };
+    const MISSING: Self = Self { part: None, color: None, has_radius: false };
 }
 
 /// What is to be done.
@@ -183,7 +184,7 @@ impl Builder<'_, '_> {
             }
         }
         let built = self.built(root, is_plain);
-        Some(built.tree.map_or(Operand::MISSING, |tree| Operand::one(tree, built.color)))
+        Some(built.part.map_or(Operand::MISSING, |part| Operand::one(part, built.color)))
     }
 
     /// Only combinations have colours of their own.
@@ -230,7 +231,10 @@ impl Builder<'_, '_> {
             Content::Solid(solid) => match leaf::leaf(solid, self.reach, self.style) {
                 Ok(leaf) => {
                     self.nodes += leaf.nodes;
-                    Built { tree: Some(leaf.tree), color: None, has_radius: leaf.has_radius }
+                    // Half spaces have no box.
+                    let bounds = if leaf.bounds.is_empty() { Bounds::EVERYWHERE } else { leaf.bounds };
+                    let part = Part { tree: leaf.tree, bounds };
+                    Built { part: Some(part), color: None, has_radius: leaf.has_radius }
                 }
                 Err(flaw) => {
                     let word = solid.kind.word();
@@ -278,13 +282,18 @@ impl Builder<'_, '_> {
             }
             has_radius |= built.has_radius;
             self.nodes += 2;
-            operands.push(built.tree.map_or(Operand::MISSING, |tree| {
-                let tree = if map == DAffine3::IDENTITY { tree } else { Tree::at(span, map, vec![tree]) };
-                Operand::one(tree, built.color)
+            operands.push(built.part.map_or(Operand::MISSING, |part| {
+                let moved = |Part { tree, bounds }| Part {
+                    tree: Tree::at(span, map, vec![tree]),
+                    bounds: map_bounds(&map, bounds),
+                };
+                let part = if map == DAffine3::IDENTITY { part } else { moved(part) };
+                Operand::one(part, built.color)
             }));
         }
+        let setting = Setting { span, style: self.style };
         let is_whole = operands.len() == made.members.len();
-        let set = if is_whole { evaluate(operands, &made.steps, span) } else { Some(Operand::MISSING) };
+        let set = if is_whole { evaluate(operands, &made.steps, setting) } else { Some(Operand::MISSING) };
         self.tell(object, problems)?;
         let Some(set) = set else {
             let path = self.path_to(object);
@@ -294,11 +303,11 @@ impl Builder<'_, '_> {
         };
         let own = if is_plain { None } else { self.color(&properties) };
         let color = own.or(set.color);
-        let tree = set.tree(span).map(|tree| match own {
-            Some(own) => colored(tree, own, span),
-            None => tree,
+        let part = set.part(span).map(|part| match own {
+            Some(own) => Part { tree: colored(part.tree, own, span), ..part },
+            None => part,
         });
-        Some(Built { color: color.filter(|_| tree.is_some()), tree, has_radius })
+        Some(Built { color: color.filter(|_| part.is_some()), part, has_radius })
     }
 
     /// Matrices that make no map, which are errors, and those of which BRL-CAD makes something else.
@@ -435,9 +444,9 @@ fn members(database: &Database, made: &Combination, is_plain: bool) -> Vec<(Opti
 }
 
 /// The result of steps on members; `None` if they do not fit.
-fn evaluate(operands: Vec<Operand>, steps: &[SetStep], span: Span) -> Option<Operand> {
+fn evaluate(operands: Vec<Operand>, steps: &[SetStep], setting: Setting) -> Option<Operand> {
     if steps.is_empty() {
-        let union = |all, one| Operand::combine(SetStep::Union, all, one, span);
+        let union = |all, one| Operand::combine(SetStep::Union, all, one, setting);
         return Some(operands.into_iter().fold(Operand::MISSING, union));
     }
     let mut members = operands.into_iter();
@@ -445,10 +454,10 @@ fn evaluate(operands: Vec<Operand>, steps: &[SetStep], span: Span) -> Option<Ope
     for &step in steps {
         let result = match step {
             SetStep::Member => members.next()?,
-            SetStep::Complement => stack.pop()?.complement(span),
+            SetStep::Complement => stack.pop()?.complement(setting.span),
             SetStep::Union | SetStep::Intersection | SetStep::Difference | SetStep::Exclusive => {
                 let (right, left) = (stack.pop()?, stack.pop()?);
-                Operand::combine(step, left, right, span)
+                Operand::combine(step, left, right, setting)
             }
         };
         stack.push(result);
