@@ -30,7 +30,9 @@ impl Message {
             rendered: source.render(diagnostic),
             file: source.name.to_owned(),
             byte: span.map(|span| span.start),
-            place: place.filter(|_| !source.is_binary()).map(|place| place.map(|byte| source.position(byte as usize))),
+            place: place
+                .filter(|_| !source.is_binary())
+                .map(|place| place.map(|byte| source.position(byte as usize))),
             message: message.clone(),
             hint: help.clone(),
         }
@@ -38,7 +40,15 @@ impl Message {
 
     /// A message whose text says its place.
     pub fn rendered(severity: Severity, file: &str, rendered: String) -> Self {
-        Self { severity, file: file.to_owned(), byte: None, place: None, message: rendered.clone(), hint: None, rendered }
+        Self {
+            severity,
+            file: file.to_owned(),
+            byte: None,
+            place: None,
+            message: rendered.clone(),
+            hint: None,
+            rendered,
+        }
     }
 
     /// For machines.

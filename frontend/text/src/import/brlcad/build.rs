@@ -1,8 +1,8 @@
 //! From objects to a tree: each object once, a use of it under the matrix of the use.
 //!
 //! An object has a tree with the colours of its regions, and one without colours where something above has
-//! decided: below a region, below a colour that is inherited, and in what is subtracted, which shows the colour
-//! of what it is subtracted from.
+//! decided: below a region, below a colour that is inherited, and in what is subtracted, which shows the
+//! colour of what it is subtracted from.
 
 use std::collections::{HashMap, HashSet};
 

@@ -4,10 +4,10 @@
 //! field = max(0, 1/2 - d / 2s)       d <= 0 inside; s is about half the thickness of the solid
 //! ```
 //!
-//! So the field of a solid is 1/2 on its surface, about 1 in its middle, and 0 at the distance s from it. Where
-//! a skeleton with the falloff `linear` is the solid, it is that skeleton; else the solid is a formula in a
-//! frame of its own, in which its parameters are 1, under the affine map of the frame. Solids of one kind have
-//! one formula, so they are rows of one table.
+//! So the field of a solid is 1/2 on its surface, about 1 in its middle, and 0 at the distance s from it.
+//! Where a skeleton with the falloff `linear` is the solid, it is that skeleton; else the solid is a formula
+//! in a frame of its own, in which its parameters are 1, under the affine map of the frame. Solids of one kind
+//! have one formula, so they are rows of one table.
 
 mod block;
 mod cone;

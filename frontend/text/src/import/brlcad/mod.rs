@@ -41,7 +41,7 @@ use crate::Options;
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
     recognizes: |bytes| Kind::of(bytes).is_some(),
     has_objects: true,
-    ..SceneFormatRow::new(&["g", "asc"], "a BRL-CAD database", |bytes, options| brlcad(bytes, options))
+    ..SceneFormatRow::new(&["g", "asc"], "a BRL-CAD database", brlcad)
 };
 
 /// How a database is written.

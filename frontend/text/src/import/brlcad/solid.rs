@@ -1,7 +1,7 @@
 //! The solids: a row for each kind, with its number in binary files, its words in text, and its parameters.
 //!
 //! ```text
-//! tor   binary 1   V 3 numbers, H 3, r_a 1, r_h 1      text: put {rim.s} tor V {0 0 9} H {0 0 1} r_a 11 r_h 3
+//! tor   binary 1   V 3 numbers, H 3, r_a 1, r_h 1    text: put {rim.s} tor V {0 0 9} H {0 0 1} r_a 11 r_h 3
 //! ```
 //!
 //! The body of a binary object has the same numbers in the same order. Three kinds have lists of any length.

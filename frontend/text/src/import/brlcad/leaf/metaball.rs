@@ -5,8 +5,8 @@
 //! method 2    sum exp(b - b r^2 / f^2) >= threshold                   Blinn's
 //! ```
 //!
-//! A term that has to give its share of the threshold at least bounds how far from a point the surface may be;
-//! the field ends at the box of all these balls.
+//! Some point has to give its share of the threshold at least, which bounds how far the surface may be from
+//! it; the field ends at the box of all these balls.
 
 use glam::DVec3;
 use jbt_model::bounds::Bounds;

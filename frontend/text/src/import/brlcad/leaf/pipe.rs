@@ -1,11 +1,11 @@
 //! Pipes: straight pieces, and arcs where they bend, less the same with the inner diameters.
 //!
 //! ```text
-//!      ______________                  at a point with the bend radius R and the turn a, an arc about a centre
-//!     |   straight   `-.               beside the point replaces what is within R tan(a / 2) of it
+//!      ______________                at a point with the bend radius R and the turn a, an arc about a
+//!     |   straight   `-.             centre beside the point replaces what is within R tan(a / 2) of it
 //!     |______________  |  arc
 //!                    `\|
-//!                      | |             a straight piece has flat ends, and radii that change evenly
+//!                      | |           a straight piece has flat ends, and radii that change evenly
 //! ```
 //!
 //! Pieces meet at flat ends, where the field of their union would fall to that of the surface. So where a
@@ -72,9 +72,8 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(2 * points.len());
     // Where the straight piece begins that is under way, and whether pieces join there without a kink.
     let (mut start, mut joins) = (at(0), false);
-    for index in 1..=last {
-        let bend =
-            if index < last { bend(at(index - 1), at(index), at(index + 1), points[index][5]) } else { None };
+    for (index, point) in points.iter().enumerate().skip(1) {
+        let bend = if index < last { bend(at(index - 1), at(index), at(index + 1), point[5]) } else { None };
         let cut = bend.as_ref().map_or(DVec3::ZERO, |bend| bend.first);
         let (mut from, mut to) = (start, at(index) + cut);
         let mut radii = [radius(index - 1), radius(index)];

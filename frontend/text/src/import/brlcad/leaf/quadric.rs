@@ -1,7 +1,7 @@
 //! Paraboloids and hyperboloids between flat ends, and cylinders over parabolas and hyperbolas.
 //!
-//! In their frames a base is at z = 0 and a top at z = 1; B of a cylinder is along z too, and its length along
-//! x.
+//! In their frames a base is at z = 0 and a top at z = 1; B of a cylinder is along z too, and its length
+//! along x.
 
 use glam::DVec3;
 use jbt_model::bounds::Bounds;
