@@ -10,8 +10,10 @@
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::clip;
 
-use super::database::{Combination, Content, Database, Member, Object, PaletteRange, Properties, SetStep};
-use super::solid::{Solid, SolidShape, foreign, of_minor};
+use super::database::{
+    Combination, Database, MemberUse, Object, ObjectContent, PaletteRange, ProgramStep, Properties,
+};
+use super::solid::{DatabaseSolid, SolidShape, foreign, of_minor};
 
 /// How every file begins: a header record of one chunk.
 pub(super) const HEADER: [u8; 8] = [0x76, 1, 0, 0, 0, 0, 1, 0x35];
@@ -137,15 +139,15 @@ fn record(database: &mut Database, file: &mut Cursor) -> Result<(), Broken> {
     let body = optional(&mut rest, bflags, "a body")?;
     let properties = properties(database, &mut attributes)?;
     let content = match (major, minor) {
-        (GEOMETRY, COMBINATION) => combination(database, body)?.map(Content::Combination),
+        (GEOMETRY, COMBINATION) => combination(database, body)?.map(ObjectContent::Combination),
         (GEOMETRY, _) => geometry(database, minor, body)?,
-        (ATTRIBUTES, _) => Some(Content::Text),
+        (ATTRIBUTES, _) => Some(ObjectContent::Text),
         _ => {
             let shown = clip(&database.text(name));
             let message =
                 format!("`{shown}` is no geometry, but data of kind {major}.{minor}: it is left out");
             database.warnings.add(|| Diagnostic::warning(Some(span), message));
-            Some(Content::Text)
+            Some(ObjectContent::Text)
         }
     };
     if let Some(content) = content {
@@ -192,8 +194,8 @@ fn palette(database: &mut Database, value: Span) {
 }
 
 /// A solid, or an object of another kind. `None` after a message.
-fn geometry(database: &mut Database, minor: u8, mut body: Cursor) -> Result<Option<Content>, Broken> {
-    let Some(row) = of_minor(minor) else { return Ok(Some(Content::Foreign(foreign(minor)))) };
+fn geometry(database: &mut Database, minor: u8, mut body: Cursor) -> Result<Option<ObjectContent>, Broken> {
+    let Some(row) = of_minor(minor) else { return Ok(Some(ObjectContent::Foreign(foreign(minor)))) };
     let span = body.span();
     let what = format!("the body of the {}", row.words[0]);
     let (fixed, each) = row.shape.counts();
@@ -226,7 +228,7 @@ fn geometry(database: &mut Database, minor: u8, mut body: Cursor) -> Result<Opti
         }
         numbers.push(number);
     }
-    Ok(Some(Content::Solid(Solid { kind: row.kind, numbers })))
+    Ok(Some(ObjectContent::Solid(DatabaseSolid { kind: row.kind, numbers })))
 }
 
 /// A combination. `None` after a message.
@@ -273,16 +275,16 @@ fn combination(database: &mut Database, mut body: Cursor) -> Result<Option<Combi
         if !is_identity && index >= matrices {
             return Err((name, format!("there is no matrix {index} among {matrices}")));
         }
-        combination.members.push(Member { name, matrix: (!is_identity).then_some(index as u32) });
+        combination.members.push(MemberUse { name, matrix: (!is_identity).then_some(index as u32) });
     }
     for at in program.at..program.end {
         let step = match program.bytes[at] {
-            1 => SetStep::Member,
-            2 => SetStep::Union,
-            3 => SetStep::Intersection,
-            4 => SetStep::Difference,
-            5 => SetStep::Exclusive,
-            6 => SetStep::Complement,
+            1 => ProgramStep::Member,
+            2 => ProgramStep::Union,
+            3 => ProgramStep::Intersection,
+            4 => ProgramStep::Difference,
+            5 => ProgramStep::Exclusive,
+            6 => ProgramStep::Complement,
             other => return Err((Span::new(at, at + 1), format!("there is no step {other}"))),
         };
         combination.steps.push(step);

@@ -11,16 +11,13 @@ use jbt_ir::limits::MAX_NODES;
 use jbt_model::affine::map_bounds;
 use jbt_model::bounds::Bounds;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::kind::NodeKind;
-use jbt_model::number::Number;
 use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
 
-use super::database::{Combination, Content, Database, Properties, SetStep};
+use super::database::{Combination, Database, ObjectContent, ProgramStep, Properties};
 use super::leaf::{self, Flaw, LeafStyle};
-use super::operand::{Operand, Part, Setting};
+use super::operand::{CombinationSetting, PointSet, SetPart, colored};
 use super::solid::SolidKind;
-use crate::color::linear;
 
 /// How thick the field of a half space is, for the size of the largest solid.
 const HALF_THICKNESS: f64 = 0.1;
@@ -35,7 +32,7 @@ const PATH_ENDS: usize = 6;
 pub(super) fn build(database: &mut Database, object: Option<&str>) -> Option<Tree> {
     let roots = roots(database, object)?;
     let count = database.objects.len();
-    let mut builder = Builder {
+    let mut builder = TreeBuilder {
         reach: reach(database),
         style: if database.members > MANY { LeafStyle::Alike } else { LeafStyle::Plain },
         states: std::iter::repeat_with(<[ObjectState; 2]>::default).take(count).collect(),
@@ -47,11 +44,11 @@ pub(super) fn build(database: &mut Database, object: Option<&str>) -> Option<Tre
             || !database.palette.is_empty(),
         database,
     };
-    let mut whole = Operand::MISSING;
-    let setting = Setting { span: Span::default(), style: builder.style };
+    let mut whole = PointSet::MISSING;
+    let setting = CombinationSetting { span: Span::default(), style: builder.style };
     for &root in &roots {
         let root = builder.run(root)?;
-        whole = Operand::combine(SetStep::Union, whole, root, setting);
+        whole = PointSet::combine(ProgramStep::Union, whole, root, setting);
     }
     if object.is_none() {
         builder.refuse_circles()?;
@@ -70,13 +67,13 @@ fn roots(database: &mut Database, object: Option<&str>) -> Option<Vec<u32>> {
     let Some(name) = object else {
         let mut used: HashSet<&[u8]> = HashSet::new();
         for object in &database.objects {
-            if let Content::Combination(made) = &object.content {
+            if let ObjectContent::Combination(made) = &object.content {
                 used.extend(made.members.iter().map(|member| database.at(member.name)));
             }
         }
         let is_top = |at: &usize| {
             let object = &database.objects[*at];
-            !matches!(object.content, Content::Text) && !used.contains(database.at(object.name))
+            !matches!(object.content, ObjectContent::Text) && !used.contains(database.at(object.name))
         };
         return Some((0..database.objects.len()).filter(is_top).map(|at| at as u32).collect());
     };
@@ -98,7 +95,7 @@ fn roots(database: &mut Database, object: Option<&str>) -> Option<Vec<u32>> {
 fn reach(database: &Database) -> f64 {
     let mut all = Bounds::EMPTY;
     for object in &database.objects {
-        if let Content::Solid(solid) = &object.content
+        if let ObjectContent::Solid(solid) = &object.content
             && !matches!(solid.kind, SolidKind::Half | SolidKind::Planes)
             && let Ok(leaf) = leaf::leaf(solid, 1.0, LeafStyle::Plain)
             && leaf.bounds.is_finite()
@@ -123,7 +120,7 @@ enum ObjectState {
 #[derive(Clone)]
 struct Built {
     /// None if it is missing, or nothing is left of it.
-    part: Option<Part>,
+    part: Option<SetPart>,
     /// The first colour in it.
     color: Option<[u8; 3]>,
     /// Whether a solid in it has a radius that belongs to no vector.
@@ -150,7 +147,7 @@ struct Note {
     count: usize,
 }
 
-struct Builder<'a, 'b> {
+struct TreeBuilder<'a, 'b> {
     database: &'a mut Database<'b>,
     reach: f64,
     style: LeafStyle,
@@ -163,9 +160,9 @@ struct Builder<'a, 'b> {
     has_colors: bool,
 }
 
-impl Builder<'_, '_> {
+impl TreeBuilder<'_, '_> {
     /// Builds a root. `None` after a message that ends it all.
-    fn run(&mut self, root: u32) -> Option<Operand> {
+    fn run(&mut self, root: u32) -> Option<PointSet> {
         let is_plain = self.is_plain(root, !self.has_colors);
         let mut tasks = vec![BuildTask::Enter { object: root, is_plain }];
         while let Some(task) = tasks.pop() {
@@ -184,12 +181,12 @@ impl Builder<'_, '_> {
             }
         }
         let built = self.built(root, is_plain);
-        Some(built.part.map_or(Operand::MISSING, |part| Operand::one(part, built.color)))
+        Some(built.part.map_or(PointSet::MISSING, |part| PointSet::one(part, built.color)))
     }
 
     /// Only combinations have colours of their own.
     fn is_plain(&self, object: u32, wanted: bool) -> bool {
-        wanted || !matches!(self.database.objects[object as usize].content, Content::Combination(_))
+        wanted || !matches!(self.database.objects[object as usize].content, ObjectContent::Combination(_))
     }
 
     fn built(&self, object: u32, is_plain: bool) -> Built {
@@ -211,7 +208,7 @@ impl Builder<'_, '_> {
         let entry = &self.database.objects[object as usize];
         let (span, properties) = (entry.span, entry.properties);
         let built = match &entry.content {
-            Content::Combination(made) => {
+            ObjectContent::Combination(made) => {
                 let members = members(self.database, made, is_plain || is_decided(&properties));
                 tasks.push(BuildTask::Leave { object, is_plain });
                 self.states[object as usize][usize::from(is_plain)] = ObjectState::Open;
@@ -228,12 +225,12 @@ impl Builder<'_, '_> {
                 }
                 return Some(());
             }
-            Content::Solid(solid) => match leaf::leaf(solid, self.reach, self.style) {
+            ObjectContent::Solid(solid) => match leaf::leaf(solid, self.reach, self.style) {
                 Ok(leaf) => {
                     self.nodes += leaf.nodes;
                     // Half spaces have no box.
                     let bounds = if leaf.bounds.is_empty() { Bounds::EVERYWHERE } else { leaf.bounds };
-                    let part = Part { tree: leaf.tree, bounds };
+                    let part = SetPart { tree: leaf.tree, bounds };
                     Built { part: Some(part), color: None, has_radius: leaf.has_radius }
                 }
                 Err(flaw) => {
@@ -242,12 +239,12 @@ impl Builder<'_, '_> {
                     Built::MISSING
                 }
             },
-            Content::Foreign(kind) => {
+            ObjectContent::Foreign(kind) => {
                 let message = format!("a {kind} has no counterpart here; it is left out");
                 self.add_note(object, span, &message);
                 Built::MISSING
             }
-            Content::Text => {
+            ObjectContent::Text => {
                 self.add_note(object, span, "this is no solid; it is left out");
                 Built::MISSING
             }
@@ -260,7 +257,7 @@ impl Builder<'_, '_> {
     fn put_together(&mut self, object: u32, is_plain: bool) -> Option<Built> {
         let entry = &self.database.objects[object as usize];
         let (span, properties) = (entry.span, entry.properties);
-        let Content::Combination(made) = &entry.content else { return Some(Built::MISSING) };
+        let ObjectContent::Combination(made) = &entry.content else { return Some(Built::MISSING) };
         let below = members(self.database, made, is_plain || is_decided(&properties));
         let mut operands = Vec::with_capacity(below.len());
         let mut has_radius = false;
@@ -282,18 +279,18 @@ impl Builder<'_, '_> {
             }
             has_radius |= built.has_radius;
             self.nodes += 2;
-            operands.push(built.part.map_or(Operand::MISSING, |part| {
-                let moved = |Part { tree, bounds }| Part {
+            operands.push(built.part.map_or(PointSet::MISSING, |part| {
+                let moved = |SetPart { tree, bounds }| SetPart {
                     tree: Tree::at(span, map, vec![tree]),
                     bounds: map_bounds(&map, bounds),
                 };
                 let part = if map == DAffine3::IDENTITY { part } else { moved(part) };
-                Operand::one(part, built.color)
+                PointSet::one(part, built.color)
             }));
         }
-        let setting = Setting { span, style: self.style };
+        let setting = CombinationSetting { span, style: self.style };
         let is_whole = operands.len() == made.members.len();
-        let set = if is_whole { evaluate(operands, &made.steps, setting) } else { Some(Operand::MISSING) };
+        let set = if is_whole { evaluate(operands, &made.steps, setting) } else { Some(PointSet::MISSING) };
         self.tell(object, problems)?;
         let Some(set) = set else {
             let path = self.path_to(object);
@@ -304,7 +301,7 @@ impl Builder<'_, '_> {
         let own = if is_plain { None } else { self.color(&properties) };
         let color = own.or(set.color);
         let part = set.part(span).map(|part| match own {
-            Some(own) => Part { tree: colored(part.tree, own, span), ..part },
+            Some(own) => SetPart { tree: colored(part.tree, own, span), ..part },
             None => part,
         });
         Some(Built { color: color.filter(|_| part.is_some()), part, has_radius })
@@ -347,7 +344,7 @@ impl Builder<'_, '_> {
     fn refuse_circles(&mut self) -> Option<()> {
         for object in 0..self.states.len() as u32 {
             let is_new = self.states[object as usize].iter().all(|state| matches!(state, ObjectState::New));
-            if is_new && !matches!(self.database.objects[object as usize].content, Content::Text) {
+            if is_new && !matches!(self.database.objects[object as usize].content, ObjectContent::Text) {
                 self.run(object)?;
             }
         }
@@ -421,14 +418,17 @@ fn members(database: &Database, made: &Combination, is_plain: bool) -> Vec<(Opti
     let (mut starts, mut next) = (Vec::new(), 0);
     for step in &made.steps {
         match step {
-            SetStep::Member => {
+            ProgramStep::Member => {
                 starts.push(next);
                 next = count.min(next + 1);
             }
-            SetStep::Complement => {}
-            SetStep::Union | SetStep::Intersection | SetStep::Difference | SetStep::Exclusive => {
+            ProgramStep::Complement => {}
+            ProgramStep::Union
+            | ProgramStep::Intersection
+            | ProgramStep::Difference
+            | ProgramStep::Exclusive => {
                 let right = starts.pop().unwrap_or(next);
-                if *step == SetStep::Difference {
+                if *step == ProgramStep::Difference {
                     begins[right] += 1;
                     begins[next] -= 1;
                 }
@@ -436,7 +436,7 @@ fn members(database: &Database, made: &Combination, is_plain: bool) -> Vec<(Opti
         }
     }
     let mut depth = 0;
-    let member = |(member, begins): (&super::database::Member, &i64)| {
+    let member = |(member, begins): (&super::database::MemberUse, &i64)| {
         depth += begins;
         (database.find(database.at(member.name)), member.name, is_plain || depth > 0)
     };
@@ -444,33 +444,29 @@ fn members(database: &Database, made: &Combination, is_plain: bool) -> Vec<(Opti
 }
 
 /// The result of steps on members; `None` if they do not fit.
-fn evaluate(operands: Vec<Operand>, steps: &[SetStep], setting: Setting) -> Option<Operand> {
+fn evaluate(operands: Vec<PointSet>, steps: &[ProgramStep], setting: CombinationSetting) -> Option<PointSet> {
     if steps.is_empty() {
-        let union = |all, one| Operand::combine(SetStep::Union, all, one, setting);
-        return Some(operands.into_iter().fold(Operand::MISSING, union));
+        let union = |all, one| PointSet::combine(ProgramStep::Union, all, one, setting);
+        return Some(operands.into_iter().fold(PointSet::MISSING, union));
     }
     let mut members = operands.into_iter();
-    let mut stack: Vec<Operand> = Vec::new();
+    let mut stack: Vec<PointSet> = Vec::new();
     for &step in steps {
         let result = match step {
-            SetStep::Member => members.next()?,
-            SetStep::Complement => stack.pop()?.complement(setting.span),
-            SetStep::Union | SetStep::Intersection | SetStep::Difference | SetStep::Exclusive => {
+            ProgramStep::Member => members.next()?,
+            ProgramStep::Complement => stack.pop()?.complement(setting.span),
+            ProgramStep::Union
+            | ProgramStep::Intersection
+            | ProgramStep::Difference
+            | ProgramStep::Exclusive => {
                 let (right, left) = (stack.pop()?, stack.pop()?);
-                Operand::combine(step, left, right, setting)
+                PointSet::combine(step, left, right, setting)
             }
         };
         stack.push(result);
     }
     let whole = stack.pop()?;
     (stack.is_empty() && members.next().is_none()).then_some(whole)
-}
-
-/// A tree in a colour, which screens have in these bytes.
-pub(super) fn colored(tree: Tree, color: [u8; 3], span: Span) -> Tree {
-    let values = color.map(|byte| linear(&Number::from(f64::from(byte) / 255.0)).value());
-    let kind = NodeKind::Attribute { name: "color".into(), value: values.to_vec().into() };
-    Tree::at(span, kind, vec![tree])
 }
 
 /// The map of a matrix by rows, whose last entry divides.

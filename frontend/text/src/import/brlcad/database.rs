@@ -6,7 +6,7 @@ use jbt_ir::limits::MAX_NODES;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::{Report, clip};
 
-use super::solid::Solid;
+use super::solid::DatabaseSolid;
 
 /// The objects of a file, in its order.
 pub(super) struct Database<'a> {
@@ -29,15 +29,15 @@ pub(super) struct Object {
     /// Where it stands.
     pub(super) span: Span,
     /// What it is.
-    pub(super) content: Content,
+    pub(super) content: ObjectContent,
     /// What is said of it besides.
     pub(super) properties: Properties,
 }
 
 /// What an object is.
-pub(super) enum Content {
+pub(super) enum ObjectContent {
     /// A set of points by itself.
-    Solid(Solid),
+    Solid(DatabaseSolid),
     /// Members, and how they are combined.
     Combination(Combination),
     /// A kind that is not read, by its name.
@@ -78,17 +78,17 @@ impl PaletteRange {
 /// Members, and how they are combined.
 #[derive(Default)]
 pub(super) struct Combination {
-    /// The members, in the order in which [`SetStep::Member`] takes them.
-    pub(super) members: Vec<Member>,
+    /// The members, in the order in which [`ProgramStep::Member`] takes them.
+    pub(super) members: Vec<MemberUse>,
     /// Matrices of members, by rows.
     pub(super) matrices: Vec<[f64; 16]>,
     /// What is done, in postfix order; nothing stands for the union of all.
-    pub(super) steps: Vec<SetStep>,
+    pub(super) steps: Vec<ProgramStep>,
 }
 
 /// A use of an object.
 #[derive(Clone, Copy)]
-pub(super) struct Member {
+pub(super) struct MemberUse {
     /// Its name: bytes of the file.
     pub(super) name: Span,
     /// Its matrix, by the place in the list.
@@ -97,7 +97,7 @@ pub(super) struct Member {
 
 /// A step of a combination.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum SetStep {
+pub(super) enum ProgramStep {
     /// The next member.
     Member,
     Union,
@@ -109,7 +109,7 @@ pub(super) enum SetStep {
     Complement,
 }
 
-impl SetStep {
+impl ProgramStep {
     /// How many values it takes.
     pub(super) const fn takes(self) -> usize {
         match self {

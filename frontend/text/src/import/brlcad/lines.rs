@@ -11,8 +11,10 @@
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::database::{Combination, Content, Database, Member, Object, PaletteRange, Properties, SetStep};
-use super::solid::{Solid, SolidKind};
+use super::database::{
+    Combination, Database, MemberUse, Object, ObjectContent, PaletteRange, ProgramStep, Properties,
+};
+use super::solid::{DatabaseSolid, SolidKind};
 use super::tcl::{number, shown};
 
 /// How a file begins.
@@ -33,7 +35,7 @@ const SOLIDS: &[(i64, SolidKind, usize)] = &[
     (33, SolidKind::Waist, 11),
 ];
 
-/// Lines that begin objects without a counterpart: their letters, and what they are.
+/// FileLines that begin objects without a counterpart: their letters, and what they are.
 const FOREIGN: &[(u8, &str)] = &[
     (b'A', "ars"),
     (b'P', "poly"),
@@ -46,18 +48,15 @@ const FOREIGN: &[(u8, &str)] = &[
     (b't', "bot"),
 ];
 
-/// What is wrong where.
-type Broken = Diagnostic;
-
 /// The words of a line.
-struct Line<'a> {
+struct FileLine<'a> {
     bytes: &'a [u8],
     words: Vec<Span>,
     span: Span,
 }
 
-impl<'a> Line<'a> {
-    fn word(&self, place: usize, what: &str) -> Result<Span, Broken> {
+impl<'a> FileLine<'a> {
+    fn word(&self, place: usize, what: &str) -> Result<Span, Diagnostic> {
         let end = Span { start: self.span.end, ..self.span };
         let missing = || Diagnostic::error(Some(end), format!("{what} is missing"));
         self.words.get(place).copied().ok_or_else(missing)
@@ -76,19 +75,19 @@ impl<'a> Line<'a> {
     }
 
     /// Finite numbers from a word on.
-    fn numbers(&self, from: usize, count: usize) -> Result<Vec<f64>, Broken> {
+    fn numbers(&self, from: usize, count: usize) -> Result<Vec<f64>, Diagnostic> {
         (from..from + count).map(|place| number(self.bytes, self.word(place, "a number")?)).collect()
     }
 }
 
 /// The lines of a file.
-struct Lines<'a> {
+struct FileLines<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Lines<'a> {
-    fn next(&mut self) -> Option<Line<'a>> {
+impl<'a> FileLines<'a> {
+    fn next(&mut self) -> Option<FileLine<'a>> {
         if self.at >= self.bytes.len() {
             return None;
         }
@@ -109,19 +108,19 @@ impl<'a> Lines<'a> {
             }
             start += word.len() + 1;
         }
-        Some(Line { bytes: self.bytes, words, span })
+        Some(FileLine { bytes: self.bytes, words, span })
     }
 
     /// What begins the next line.
     fn peek(&self) -> &'a [u8] {
-        let next = Lines { bytes: self.bytes, at: self.at }.next();
+        let next = FileLines { bytes: self.bytes, at: self.at }.next();
         next.map_or(&[], |line| line.slice(0))
     }
 }
 
 /// Reads all objects.
 pub(super) fn read(database: &mut Database, bytes: &[u8]) {
-    let mut lines = Lines { bytes, at: 0 };
+    let mut lines = FileLines { bytes, at: 0 };
     while let Some(line) = lines.next() {
         if database.errors.is_full() {
             return;
@@ -133,8 +132,8 @@ pub(super) fn read(database: &mut Database, bytes: &[u8]) {
 }
 
 /// The object that begins with a line.
-fn object(database: &mut Database, lines: &mut Lines, line: &Line) -> Result<(), Broken> {
-    let plain = |content| Content::Solid(content);
+fn object(database: &mut Database, lines: &mut FileLines, line: &FileLine) -> Result<(), Diagnostic> {
+    let plain = |content| ObjectContent::Solid(content);
     let (name, content) = match line.slice(0) {
         b"" | b"M" | b"B" | b"D" | b"Q" | b"F" | b"X" => return Ok(()),
         FIRST_WORD => {
@@ -152,7 +151,7 @@ fn object(database: &mut Database, lines: &mut Lines, line: &Line) -> Result<(),
         }
         b"p" => {
             let numbers = line.numbers(2, 8)?;
-            (line.word(1, "a name")?, plain(Solid { kind: SolidKind::Particle, numbers }))
+            (line.word(1, "a name")?, plain(DatabaseSolid { kind: SolidKind::Particle, numbers }))
         }
         b"n" if line.words.len() == 3 => {
             let mut numbers = Vec::new();
@@ -163,12 +162,12 @@ fn object(database: &mut Database, lines: &mut Lines, line: &Line) -> Result<(),
                 }
                 numbers.extend(plane.numbers(1, 4)?);
             }
-            (line.word(1, "a name")?, plain(Solid { kind: SolidKind::Planes, numbers }))
+            (line.word(1, "a name")?, plain(DatabaseSolid { kind: SolidKind::Planes, numbers }))
         }
         b"w" => (line.word(1, "a name")?, plain(pipe(lines, line)?)),
         b"C" => return combination(database, lines, line),
         [letter] => match FOREIGN.iter().find(|(known, _)| known == letter) {
-            Some((_, kind)) => (line.word(1, "a name")?, Content::Foreign((*kind).to_owned())),
+            Some((_, kind)) => (line.word(1, "a name")?, ObjectContent::Foreign((*kind).to_owned())),
             None => return unknown(database, line),
         },
         _ => return unknown(database, line),
@@ -178,7 +177,7 @@ fn object(database: &mut Database, lines: &mut Lines, line: &Line) -> Result<(),
 }
 
 /// A line that means nothing here: parts of objects that are not read are such lines, too.
-fn unknown(database: &mut Database, line: &Line) -> Result<(), Broken> {
+fn unknown(database: &mut Database, line: &FileLine) -> Result<(), Diagnostic> {
     let (first, count) = (line.words[0], line.words.len());
     // Numbers continue what is not read.
     if number(line.bytes, first).is_err() {
@@ -194,12 +193,12 @@ fn unknown(database: &mut Database, line: &Line) -> Result<(), Broken> {
 }
 
 /// A solid of 24 numbers.
-fn solid(line: &Line) -> Result<Content, Broken> {
+fn solid(line: &FileLine) -> Result<ObjectContent, Diagnostic> {
     let code = line.integer(1);
     let known = SOLIDS.iter().find(|(number, ..)| Some(*number) == code);
     let Some(&(_, kind, count)) = known else {
         let shown = line.words.get(1).map_or_else(String::new, |word| shown(line.bytes, *word));
-        return Ok(Content::Foreign(format!("solid {shown}")));
+        return Ok(ObjectContent::Foreign(format!("solid {shown}")));
     };
     let mut numbers = line.numbers(4, count)?;
     match kind {
@@ -218,15 +217,15 @@ fn solid(line: &Line) -> Result<Content, Broken> {
         }
         _ => {}
     }
-    Ok(Content::Solid(Solid { kind, numbers }))
+    Ok(ObjectContent::Solid(DatabaseSolid { kind, numbers }))
 }
 
 /// A pipe: a line for each point, with inner and outer diameter and the radius of the bend in front of it.
-fn pipe(lines: &mut Lines, line: &Line) -> Result<Solid, Broken> {
+fn pipe(lines: &mut FileLines, line: &FileLine) -> Result<DatabaseSolid, Diagnostic> {
     let mut numbers = Vec::new();
     while let Some(point) = lines.next() {
         if point.slice(0).starts_with(b"END_PIPE") {
-            return Ok(Solid { kind: SolidKind::Pipe, numbers });
+            return Ok(DatabaseSolid { kind: SolidKind::Pipe, numbers });
         }
         let all = point.numbers(0, 6)?;
         numbers.extend_from_slice(&all[3..]);
@@ -236,7 +235,7 @@ fn pipe(lines: &mut Lines, line: &Line) -> Result<Solid, Broken> {
 }
 
 /// A combination and the lines of its members.
-fn combination(database: &mut Database, lines: &mut Lines, line: &Line) -> Result<(), Broken> {
+fn combination(database: &mut Database, lines: &mut FileLines, line: &FileLine) -> Result<(), Diagnostic> {
     let name = line.word(2, "the name of a combination")?;
     let mut properties = Properties { is_region: line.slice(1) != b"N", ..Properties::default() };
     properties.region = line.integer(3);
@@ -259,11 +258,11 @@ fn combination(database: &mut Database, lines: &mut Lines, line: &Line) -> Resul
     while lines.peek() == b"M" {
         let Some(member) = lines.next() else { break };
         let step = match member.slice(1) {
-            _ if made.members.is_empty() => SetStep::Union,
-            b"u" => SetStep::Union,
-            b"-" => SetStep::Difference,
-            b"+" | b"n" => SetStep::Intersection,
-            b"^" => SetStep::Exclusive,
+            _ if made.members.is_empty() => ProgramStep::Union,
+            b"u" => ProgramStep::Union,
+            b"-" => ProgramStep::Difference,
+            b"+" | b"n" => ProgramStep::Intersection,
+            b"^" => ProgramStep::Exclusive,
             _ => {
                 let word = member.word(1, "an operation")?;
                 let message = format!("there is no operation `{}`", shown(member.bytes, word));
@@ -273,23 +272,23 @@ fn combination(database: &mut Database, lines: &mut Lines, line: &Line) -> Resul
         let name = member.word(2, "the name of a member")?;
         let entries = <[f64; 16]>::try_from(member.numbers(3, 16)?).unwrap_or_default();
         // A product is complete where the next one begins.
-        if step == SetStep::Union && std::mem::replace(&mut is_product_open, !made.members.is_empty()) {
-            made.steps.push(SetStep::Union);
+        if step == ProgramStep::Union && std::mem::replace(&mut is_product_open, !made.members.is_empty()) {
+            made.steps.push(ProgramStep::Union);
         }
-        made.members.push(Member { name, matrix: Some(made.matrices.len() as u32) });
+        made.members.push(MemberUse { name, matrix: Some(made.matrices.len() as u32) });
         made.matrices.push(entries);
-        made.steps.push(SetStep::Member);
-        if step != SetStep::Union {
+        made.steps.push(ProgramStep::Member);
+        if step != ProgramStep::Union {
             made.steps.push(step);
         }
     }
     if is_product_open {
-        made.steps.push(SetStep::Union);
+        made.steps.push(ProgramStep::Union);
     }
     if !database.count_members(made.members.len(), line.span) {
         return Ok(());
     }
-    let content = Content::Combination(made);
+    let content = ObjectContent::Combination(made);
     database.add(Object { name, span: line.span, content, properties });
     Ok(())
 }

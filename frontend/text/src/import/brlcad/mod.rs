@@ -39,14 +39,14 @@ use super::format::SceneFormatRow;
 use crate::Options;
 
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
-    recognizes: |bytes| Kind::of(bytes).is_some(),
+    recognizes: |bytes| DatabaseKind::of(bytes).is_some(),
     has_objects: true,
     ..SceneFormatRow::new(&["g", "asc"], "a BRL-CAD database", brlcad)
 };
 
 /// How a database is written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Kind {
+enum DatabaseKind {
     Binary,
     /// Binary of version 4, which is not read.
     OldBinary,
@@ -54,7 +54,7 @@ enum Kind {
     OldText,
 }
 
-impl Kind {
+impl DatabaseKind {
     /// By the first bytes.
     fn of(bytes: &[u8]) -> Option<Self> {
         let words =
@@ -98,11 +98,11 @@ fn read(bytes: &[u8], options: &Options) -> Result<(Model, Vec<Diagnostic>), Vec
 fn database(bytes: &[u8]) -> Result<Database<'_>, Vec<Diagnostic>> {
     let mut database = Database::new(bytes);
     let start = Span::new(0, bytes.len().min(1));
-    match Kind::of(bytes) {
-        Some(Kind::Binary) => binary::read(&mut database, bytes),
-        Some(Kind::Text) => text::read(&mut database, bytes),
-        Some(Kind::OldText) => lines::read(&mut database, bytes),
-        Some(Kind::OldBinary) => {
+    match DatabaseKind::of(bytes) {
+        Some(DatabaseKind::Binary) => binary::read(&mut database, bytes),
+        Some(DatabaseKind::Text) => text::read(&mut database, bytes),
+        Some(DatabaseKind::OldText) => lines::read(&mut database, bytes),
+        Some(DatabaseKind::OldBinary) => {
             let error = Diagnostic::error(Some(start), "this is a binary database of version 4");
             return Err(vec![error.expected("BRL-CAD's dbupgrade makes one of version 5, g2asc a text")]);
         }

@@ -49,7 +49,7 @@ pub(super) struct SolidRow {
 }
 
 /// A solid with its numbers, all finite.
-pub(super) struct Solid {
+pub(super) struct DatabaseSolid {
     pub(super) kind: SolidKind,
     /// Those of the row's shape, in order; of a metaball the method, the threshold and the list.
     pub(super) numbers: Vec<f64>,

@@ -10,9 +10,9 @@ use serde_json::Value;
 
 use super::build::affine;
 use super::database;
-use super::database::{Content, Database};
+use super::database::{Database, ObjectContent};
 use super::leaf::{self, LeafStyle};
-use super::solid::{Solid, SolidKind};
+use super::solid::{DatabaseSolid, SolidKind};
 
 /// Uses of solids below an object.
 #[derive(Default)]
@@ -24,7 +24,7 @@ struct Outline {
 }
 
 /// The box of a solid. That of an elliptical torus is a cube in the table, which ours is in.
-fn expected_bounds(solid: &Solid) -> Bounds {
+fn expected_bounds(solid: &DatabaseSolid) -> Bounds {
     let own = leaf::leaf(solid, 1.0, LeafStyle::Plain).unwrap().bounds;
     if solid.kind != SolidKind::EllipticalTorus {
         return own;
@@ -43,7 +43,7 @@ fn outline(database: &Database, object: &str) -> Outline {
     while let Some((object, map, in_region)) = stack.pop() {
         let object = &database.objects[object as usize];
         match &object.content {
-            Content::Solid(solid) => {
+            ObjectContent::Solid(solid) => {
                 found.leaves += 1;
                 *found.kinds.entry(solid.kind.word()).or_default() += 1;
                 let own = expected_bounds(solid);
@@ -52,7 +52,7 @@ fn outline(database: &Database, object: &str) -> Outline {
                     found.bounds = Some(all.hull(map_bounds(&map, own)));
                 }
             }
-            Content::Combination(made) => {
+            ObjectContent::Combination(made) => {
                 let is_region = object.properties.is_region && !in_region;
                 found.regions += u64::from(is_region);
                 for member in &made.members {
@@ -61,8 +61,8 @@ fn outline(database: &Database, object: &str) -> Outline {
                     stack.push((child, map * own.unwrap_or(DAffine3::IDENTITY), in_region || is_region));
                 }
             }
-            Content::Foreign(kind) => panic!("{kind}"),
-            Content::Text => panic!("text"),
+            ObjectContent::Foreign(kind) => panic!("{kind}"),
+            ObjectContent::Text => panic!("text"),
         }
     }
     found
@@ -70,13 +70,15 @@ fn outline(database: &Database, object: &str) -> Outline {
 
 #[test]
 fn samples_hold_what_others_count_in_them() {
-    let Some(folder) = samples::folder("brlcad") else { return };
-    let expected = std::fs::read_to_string(folder.join("expected.json")).unwrap();
-    let expected: Value = serde_json::from_str(&expected).unwrap();
+    if samples::folder("brlcad").is_none() {
+        return;
+    }
+    let sample = |name: &str| samples::file(&format!("brlcad/{name}")).unwrap();
+    let expected: Value = serde_json::from_slice(&sample("expected.json")).unwrap();
     let mut compared = 0;
     for entry in expected.as_array().unwrap() {
         let file = entry["file"].as_str().unwrap();
-        let bytes = std::fs::read(folder.join(file)).unwrap();
+        let bytes = sample(file);
         if entry["error"] == "version 4 binary" {
             let errors = database(&bytes).err().unwrap();
             assert_eq!(errors[0].message, "this is a binary database of version 4");

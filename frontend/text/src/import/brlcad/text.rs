@@ -11,13 +11,10 @@ use std::collections::HashMap;
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::database::{Content, Database, Object, PaletteRange, Properties};
-use super::solid::{Solid, SolidRow, SolidShape, block_points, of_word};
+use super::database::{Database, Object, ObjectContent, PaletteRange, Properties};
+use super::solid::{DatabaseSolid, SolidRow, SolidShape, block_points, of_word};
 use super::tcl::{Unclosed, Words, numbers, shown, unclosed};
 use super::text_tree::combination;
-
-/// What is wrong where.
-type Broken = Diagnostic;
 
 /// Keys and values behind the kind of an object.
 type Pairs<'a> = Vec<(&'a [u8], Span)>;
@@ -60,13 +57,13 @@ impl<'a> TextReader<'a> {
     }
 
     /// The next word, which has to be there.
-    fn word(&self, words: &mut Words<'a>, what: &str) -> Result<Span, Broken> {
+    fn word(&self, words: &mut Words<'a>, what: &str) -> Result<Span, Diagnostic> {
         let at = words.at();
         let word = words.next().map_err(|word| unclosed(&word))?;
         word.ok_or_else(|| Diagnostic::error(Some(Span::new(at, at)), format!("{what} is missing")))
     }
 
-    fn pairs(&self, words: &mut Words<'a>) -> Result<Pairs<'a>, Broken> {
+    fn pairs(&self, words: &mut Words<'a>) -> Result<Pairs<'a>, Diagnostic> {
         let mut pairs = Vec::new();
         while let Some(key) = words.next().map_err(|word| unclosed(&word))? {
             let value = self.word(words, &format!("the value of `{}`", self.shown(key)))?;
@@ -75,7 +72,7 @@ impl<'a> TextReader<'a> {
         Ok(pairs)
     }
 
-    fn command(&mut self, database: &mut Database, words: &mut Words<'a>) -> Result<(), Broken> {
+    fn command(&mut self, database: &mut Database, words: &mut Words<'a>) -> Result<(), Diagnostic> {
         let start = words.at();
         let command = self.word(words, "a command")?;
         match self.slice(command) {
@@ -100,7 +97,7 @@ impl<'a> TextReader<'a> {
         Ok(())
     }
 
-    fn pairs_as_numbers(&self, words: &mut Words<'a>) -> Result<Vec<i64>, Broken> {
+    fn pairs_as_numbers(&self, words: &mut Words<'a>) -> Result<Vec<i64>, Diagnostic> {
         let mut numbers = Vec::new();
         while let Some(word) = words.next().map_err(|word| unclosed(&word))? {
             let number = std::str::from_utf8(self.slice(word)).ok().and_then(|word| word.parse().ok());
@@ -112,7 +109,7 @@ impl<'a> TextReader<'a> {
     }
 
     /// `attr set NAME key value ..`: of an object that stands above.
-    fn attributes(&self, database: &mut Database, words: &mut Words<'a>) -> Result<(), Broken> {
+    fn attributes(&self, database: &mut Database, words: &mut Words<'a>) -> Result<(), Diagnostic> {
         let set = self.word(words, "the word `set`")?;
         if self.slice(set) != b"set" {
             return Err(Diagnostic::error(
@@ -159,7 +156,7 @@ impl<'a> TextReader<'a> {
         kind: Span,
         pairs: &[(&'a [u8], Span)],
         span: Span,
-    ) -> Result<(), Broken> {
+    ) -> Result<(), Diagnostic> {
         let mut properties = Properties::default();
         let content = match self.slice(kind) {
             b"comb" => {
@@ -172,11 +169,11 @@ impl<'a> TextReader<'a> {
                 if !database.count_members(combination.members.len(), span) {
                     return Ok(());
                 }
-                Content::Combination(combination)
+                ObjectContent::Combination(combination)
             }
             word => match of_word(word) {
-                Some(row) => Content::Solid(self.solid(row, kind, pairs)?),
-                None => Content::Foreign(self.shown(kind)),
+                Some(row) => ObjectContent::Solid(self.solid(row, kind, pairs)?),
+                None => ObjectContent::Foreign(self.shown(kind)),
             },
         };
         database.add(Object { name, span, content, properties });
@@ -184,7 +181,7 @@ impl<'a> TextReader<'a> {
     }
 
     /// The finite numbers of a word, as many as wanted.
-    fn numbers(&self, span: Span, wanted: usize, key: &str) -> Result<Vec<f64>, Broken> {
+    fn numbers(&self, span: Span, wanted: usize, key: &str) -> Result<Vec<f64>, Diagnostic> {
         let numbers = numbers(self.bytes, span)?;
         let found = numbers.len();
         if wanted != found {
@@ -194,9 +191,14 @@ impl<'a> TextReader<'a> {
         Ok(numbers)
     }
 
-    fn solid(&self, row: &'static SolidRow, kind: Span, pairs: &[(&'a [u8], Span)]) -> Result<Solid, Broken> {
+    fn solid(
+        &self,
+        row: &'static SolidRow,
+        kind: Span,
+        pairs: &[(&'a [u8], Span)],
+    ) -> Result<DatabaseSolid, Diagnostic> {
         let values: HashMap<&[u8], Span> = pairs.iter().copied().collect();
-        let value = |key: &str, count: usize| -> Result<Vec<f64>, Broken> {
+        let value = |key: &str, count: usize| -> Result<Vec<f64>, Diagnostic> {
             let Some(&found) = values.get(key.as_bytes()) else {
                 let message = format!("the {} has no `{key}`", row.words[0]);
                 return Err(Diagnostic::error(Some(kind), message));
@@ -238,6 +240,6 @@ impl<'a> TextReader<'a> {
                 }
             }
         }
-        Ok(Solid { kind: row.kind, numbers })
+        Ok(DatabaseSolid { kind: row.kind, numbers })
     }
 }

@@ -8,18 +8,18 @@
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::database::{Combination, Member, SetStep};
+use super::database::{Combination, MemberUse, ProgramStep};
 use super::tcl::{numbers, shown};
 
 /// The operations by their words.
-const OPERATIONS: &[(&[u8], SetStep)] = &[
-    (b"l", SetStep::Member),
-    (b"u", SetStep::Union),
-    (b"n", SetStep::Intersection),
-    (b"+", SetStep::Intersection),
-    (b"-", SetStep::Difference),
-    (b"^", SetStep::Exclusive),
-    (b"!", SetStep::Complement),
+const OPERATIONS: &[(&[u8], ProgramStep)] = &[
+    (b"l", ProgramStep::Member),
+    (b"u", ProgramStep::Union),
+    (b"n", ProgramStep::Intersection),
+    (b"+", ProgramStep::Intersection),
+    (b"-", ProgramStep::Difference),
+    (b"^", ProgramStep::Exclusive),
+    (b"!", ProgramStep::Complement),
 ];
 
 /// A combination from its tree. One without words has no members.
@@ -53,7 +53,7 @@ pub(super) fn combination(bytes: &[u8], tree: Span) -> Result<Combination, Diagn
 
 /// An operation that is open.
 struct OpenOperation {
-    step: SetStep,
+    step: ProgramStep,
     /// How many operands it has.
     operands: usize,
     span: Span,
@@ -107,7 +107,7 @@ impl TreeReader<'_> {
             return Err(Diagnostic::error(Some(word), message).expected("expected u, n, -, ^, ! or l"));
         };
         self.open.push(OpenOperation { step, operands: 0, span: word });
-        if step != SetStep::Member {
+        if step != ProgramStep::Member {
             return Ok(());
         }
         let name = self.word("the name of a member")?;
@@ -121,8 +121,8 @@ impl TreeReader<'_> {
             matrix = Some(self.made.matrices.len() as u32);
             self.made.matrices.push(entries);
         }
-        self.made.members.push(Member { name, matrix });
-        self.made.steps.push(SetStep::Member);
+        self.made.members.push(MemberUse { name, matrix });
+        self.made.steps.push(ProgramStep::Member);
         Ok(())
     }
 
@@ -134,7 +134,7 @@ impl TreeReader<'_> {
             let wanted = step.takes();
             return Err(Diagnostic::error(Some(span), message).expected(format!("expected {wanted}")));
         }
-        if step == SetStep::Complement {
+        if step == ProgramStep::Complement {
             self.made.steps.push(step);
         }
         let Some(parent) = self.open.last_mut() else { return Ok(()) };

@@ -4,8 +4,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use jbt_model::bounds::Bounds;
 use jbt_model::builder::{Term, x, y, z};
 
-use super::parts::{Parts, Round};
-use super::{Flaw, Leaf, LeafStyle, direction, formula, length};
+use super::make::{Flaw, LeafStyle, SolidLeaf, direction, formula, length};
+use super::parts::{Revolved, SolidParts};
 
 /// How thin a cone is at its tip, for its size: a formula that divides by the width needs one.
 const TIP: f64 = 1e-6;
@@ -16,7 +16,12 @@ const TIP: f64 = 1e-6;
 /// With `t = N . q / N . H`, `N = A x B` and `w = q - t H`, a point is inside for t in [0, 1] and
 /// `(w . A / |A| a)^2 + (w . B / |B| b)^2 <= 1`, where a and b go evenly from the lengths of A and B to those
 /// of C and D.
-pub(super) fn cone(v: DVec3, h: DVec3, [base, top]: [[DVec3; 2]; 2], style: LeafStyle) -> Result<Leaf, Flaw> {
+pub(super) fn cone(
+    v: DVec3,
+    h: DVec3,
+    [base, top]: [[DVec3; 2]; 2],
+    style: LeafStyle,
+) -> Result<SolidLeaf, Flaw> {
     let lengths = |pair: [DVec3; 2]| pair.map(DVec3::length);
     let ([a, b], [c, d]) = (lengths(base), lengths(top));
     // A tip has no direction, and the other end has.
@@ -43,7 +48,7 @@ pub(super) fn cone(v: DVec3, h: DVec3, [base, top]: [[DVec3; 2]; 2], style: Leaf
     let thickness = wide_a.min(wide_b).min(half_height);
     let (sharp, flat) = (0.5 * wide_a.min(wide_b) / thickness, 0.5 * half_height / thickness);
     let (along_a, along_b) = ([a / wide_a, c / wide_a], [b / wide_b, d / wide_b]);
-    let mut parts = Parts { slabs: vec![(2, flat)], ..Parts::default() };
+    let mut parts = SolidParts { slabs: vec![(2, flat)], ..SolidParts::default() };
     let is_even = (along_a[0] - along_b[0]).abs() + (along_a[1] - along_b[1]).abs() < 1e-12;
     let inside = if is_even {
         parts.round = Some(even(along_a, sharp));
@@ -57,13 +62,13 @@ pub(super) fn cone(v: DVec3, h: DVec3, [base, top]: [[DVec3; 2]; 2], style: Leaf
     let within = Bounds::new(DVec3::new(-out, -out, -beyond), DVec3::new(out, out, beyond));
     let tree = formula(inside, within, &frame);
     let bounds = ellipse(v, first * a, second * b).hull(ellipse(v + h, first * c, second * d));
-    Ok(Leaf { tree, bounds, nodes: 2, has_radius: false })
+    Ok(SolidLeaf { tree, bounds, nodes: 2, has_radius: false })
 }
 
 /// The side of a cone whose ellipses are alike. Half axes at both ends are fractions of the wider end.
-fn even([a, c]: [f64; 2], sharp: f64) -> Round {
+fn even([a, c]: [f64; 2], sharp: f64) -> Revolved {
     let (middle, slope) = (0.5 * (a + c), if (a - c).abs() < 1e-12 { 0.0 } else { 0.5 * (c - a) });
-    Round { first: [sharp, 0.0, 0.0], second: [0.0; 3], height: [-slope * sharp, 0.5 + middle * sharp] }
+    Revolved { first: [sharp, 0.0, 0.0], second: [0.0; 3], height: [-slope * sharp, 0.5 + middle * sharp] }
 }
 
 /// Above 1/2 where a point is within the ellipse of its height.

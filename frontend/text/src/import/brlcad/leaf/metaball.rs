@@ -13,14 +13,14 @@ use jbt_model::bounds::Bounds;
 use jbt_model::builder::{Term, x, y, z};
 use jbt_model::tree::Tree;
 
-use super::{Flaw, Leaf, positive};
+use super::make::{Flaw, SolidLeaf, positive};
 use jbt_ir::limits::MAX_SKELETON_POINTS;
 
 /// Numbers of a point in the file: position, field strength, blobbiness.
 type MetaballPoint = [f64; 5];
 
 /// A metaball: the sum of the fields of its points, divided so that the threshold is 1/2.
-pub(super) fn metaball(method: f64, threshold: f64, points: &[MetaballPoint]) -> Result<Leaf, Flaw> {
+pub(super) fn metaball(method: f64, threshold: f64, points: &[MetaballPoint]) -> Result<SolidLeaf, Flaw> {
     let threshold = positive("threshold", threshold)?;
     if points.is_empty() || points.len() > MAX_SKELETON_POINTS {
         return Err(format!("it has {} points, and 1 to {MAX_SKELETON_POINTS} are read", points.len()));
@@ -55,5 +55,5 @@ pub(super) fn metaball(method: f64, threshold: f64, points: &[MetaballPoint]) ->
     let low = bounds.min.to_array().map(|low| low - margin);
     let high = bounds.max.to_array().map(|high| high + margin);
     let tree = Tree::sum(trees).within(low, high);
-    Ok(Leaf { tree, bounds, nodes, has_radius: true })
+    Ok(SolidLeaf { tree, bounds, nodes, has_radius: true })
 }

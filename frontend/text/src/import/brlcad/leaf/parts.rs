@@ -12,15 +12,15 @@
 
 use jbt_model::builder::{Term, x, y, z};
 
-use super::{LeafStyle, length};
+use super::make::{LeafStyle, length};
 
 /// Planes of the one formula.
 const PLANES: usize = 6;
 
 /// What a solid is the intersection of, in its frame.
 #[derive(Clone, Default)]
-pub(super) struct Parts {
-    pub(super) round: Option<Round>,
+pub(super) struct SolidParts {
+    pub(super) round: Option<Revolved>,
     /// An axis, and how fast the field falls along it: 1/2 at the distance 1 from the origin.
     pub(super) slabs: Vec<(usize, f64)>,
     pub(super) planes: Vec<HalfField>,
@@ -36,7 +36,7 @@ pub(super) struct HalfField {
 /// A field about z, where rho is the distance from it: of two numbers that are linear in rho and z, the
 /// length is taken from another one.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Round {
+pub(super) struct Revolved {
     /// Factors of rho and of z, and what is added.
     pub(super) first: [f64; 3],
     pub(super) second: [f64; 3],
@@ -44,7 +44,7 @@ pub(super) struct Round {
     pub(super) height: [f64; 2],
 }
 
-impl Parts {
+impl SolidParts {
     /// The field: more than 1/2 inside.
     pub(super) fn field(&self, style: LeafStyle) -> Term {
         let planes = 2 * self.slabs.len() + self.planes.len();
@@ -55,7 +55,7 @@ impl Parts {
     }
 
     fn plain(&self) -> Term {
-        let round = self.round.iter().map(Round::plain);
+        let round = self.round.iter().map(Revolved::plain);
         let slabs = self.slabs.iter().map(|&(axis, sharp)| (0.5 + sharp) - sharp * axis_of(axis).abs());
         let planes = self.planes.iter().map(HalfField::field);
         let all = round.chain(slabs).chain(planes);
@@ -74,7 +74,7 @@ impl Parts {
             }
         }
         planes.resize(PLANES, missing);
-        let round = self.round.unwrap_or(Round { height: [0.0, FAR], ..Round::default() });
+        let round = self.round.unwrap_or(Revolved { height: [0.0, FAR], ..Revolved::default() });
         planes.iter().fold(round.whole(), |least, plane| least.min(plane.field()))
     }
 }
@@ -98,7 +98,7 @@ impl HalfField {
     }
 }
 
-impl Round {
+impl Revolved {
     /// With all numbers.
     fn whole(&self) -> Term {
         let beside = length(&x(), &y());

@@ -18,7 +18,8 @@ use jbt_model::builder::{x, y, z};
 use jbt_model::skeleton::Point;
 use jbt_model::tree::Tree;
 
-use super::{Flaw, Leaf, LeafStyle, cone, formula, frame, grown, length, upright};
+use super::cone;
+use super::make::{Flaw, LeafStyle, SolidLeaf, formula, frame, grown, length, upright};
 
 /// The smallest turn, in radians, that is one.
 const SMALLEST_TURN: f64 = 1e-6;
@@ -28,7 +29,7 @@ type PipePoint = [f64; 6];
 
 /// A part of the middle line.
 #[derive(Clone, Copy)]
-enum Piece {
+enum PipePiece {
     /// From a place to another, with radii there.
     Straight { from: DVec3, to: DVec3, radii: [f64; 2] },
     /// About a centre, `bend` from it; `towards` the middle of the arc, half an angle to both sides.
@@ -38,7 +39,7 @@ enum Piece {
 }
 
 /// A pipe through points.
-pub(super) fn pipe(points: &[PipePoint], style: LeafStyle) -> Result<Leaf, Flaw> {
+pub(super) fn pipe(points: &[PipePoint], style: LeafStyle) -> Result<SolidLeaf, Flaw> {
     if points.len() < 2 || points.len() > MAX_SKELETON_POINTS {
         return Err(format!("it has {} points, and 2 to {MAX_SKELETON_POINTS} are read", points.len()));
     }
@@ -57,7 +58,7 @@ pub(super) fn pipe(points: &[PipePoint], style: LeafStyle) -> Result<Leaf, Flaw>
         nodes += 2 * holes.len() + 2;
         tree = Tree::difference([tree, union(&mut holes)]);
     }
-    Ok(Leaf { tree, bounds, nodes, has_radius: true })
+    Ok(SolidLeaf { tree, bounds, nodes, has_radius: true })
 }
 
 fn union(trees: &mut Vec<Tree>) -> Tree {
@@ -65,7 +66,7 @@ fn union(trees: &mut Vec<Tree>) -> Tree {
 }
 
 /// The pieces with the diameters in this column; both ends are drawn out by a length.
-fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
+fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<PipePiece> {
     let at = |index: usize| DVec3::from_slice(&points[index][..3]);
     let radius = |index: usize| 0.5 * points[index][column].max(0.0);
     let last = points.len() - 1;
@@ -83,7 +84,7 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
             let slope = (radii[1] - radii[0]) / length;
             if joins {
                 let radius = radii[0] / (1.0 + slope * slope).sqrt();
-                pieces.push(Piece::Joint { at: from, radius: radius.min(length) });
+                pieces.push(PipePiece::Joint { at: from, radius: radius.min(length) });
             }
             if index == 1 {
                 let by = drawn(radii[0], -slope, drawn_out);
@@ -95,7 +96,7 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
                 to += ahead * by;
                 radii[1] += slope * by;
             }
-            pieces.push(Piece::Straight { from, to, radii });
+            pieces.push(PipePiece::Straight { from, to, radii });
         }
         let Some(bend) = bend else {
             joins = index < last && is_straight(at(index - 1), at(index), at(index + 1));
@@ -105,7 +106,7 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
         let radius = radius(index);
         if radius > 0.0 {
             let arc_length = bend.radius * bend.half_angle;
-            pieces.push(Piece::Arc {
+            pieces.push(PipePiece::Arc {
                 center: bend.center,
                 normal: bend.normal,
                 towards: bend.towards,
@@ -114,7 +115,7 @@ fn pieces(points: &[PipePoint], column: usize, drawn_out: f64) -> Vec<Piece> {
                 radius,
             });
             if length > 0.0 {
-                pieces.push(Piece::Joint { at: to, radius: radius.min(arc_length).min(length) });
+                pieces.push(PipePiece::Joint { at: to, radius: radius.min(arc_length).min(length) });
             }
         }
         start = at(index) + bend.second;
@@ -129,10 +130,10 @@ fn drawn(radius: f64, slope: f64, by: f64) -> f64 {
 }
 
 /// Joints within both of their neighbours: within a length of each, and within a cone that narrows.
-fn narrowed(mut pieces: Vec<Piece>) -> Vec<Piece> {
+fn narrowed(mut pieces: Vec<PipePiece>) -> Vec<PipePiece> {
     for at in 1..pieces.len().saturating_sub(1) {
         let sides = [pieces[at - 1], pieces[at + 1]];
-        if let Piece::Joint { radius, .. } = &mut pieces[at] {
+        if let PipePiece::Joint { radius, .. } = &mut pieces[at] {
             for side in sides {
                 *radius = radius.min(side.holds());
             }
@@ -142,7 +143,7 @@ fn narrowed(mut pieces: Vec<Piece>) -> Vec<Piece> {
 }
 
 /// An arc in place of a kink.
-struct Bend {
+struct PipeBend {
     /// Where it begins and ends, from the point.
     first: DVec3,
     second: DVec3,
@@ -165,7 +166,7 @@ fn is_straight(before: DVec3, at: DVec3, after: DVec3) -> bool {
 }
 
 /// The bend at a point; none where the line goes straight on, turns back, or has a bend radius of 0.
-fn bend(before: DVec3, at: DVec3, after: DVec3, radius: f64) -> Option<Bend> {
+fn bend(before: DVec3, at: DVec3, after: DVec3, radius: f64) -> Option<PipeBend> {
     let (angle, back, ahead) = turn(before, at, after);
     let half_angle = 0.5 * angle;
     if angle <= SMALLEST_TURN || std::f64::consts::PI - angle <= SMALLEST_TURN || radius <= 0.0 {
@@ -176,10 +177,10 @@ fn bend(before: DVec3, at: DVec3, after: DVec3, radius: f64) -> Option<Bend> {
     let center = at + inwards * (radius / half_angle.cos());
     let normal = back.cross(ahead).normalize_or_zero();
     let (first, second) = (back * cut, ahead * cut);
-    Some(Bend { first, second, center, normal, towards: -inwards, half_angle, radius })
+    Some(PipeBend { first, second, center, normal, towards: -inwards, half_angle, radius })
 }
 
-impl Piece {
+impl PipePiece {
     /// The largest radius of a ball about an end that it holds half of.
     fn holds(self) -> f64 {
         match self {
@@ -256,7 +257,7 @@ fn arc(frame: &DAffine3, half_angle: f64, bend: f64, radius: f64) -> Tree {
     formula(tube.min(wedge), within, frame)
 }
 
-fn trees(pieces: &[Piece], style: LeafStyle) -> Result<Vec<Tree>, Flaw> {
+fn trees(pieces: &[PipePiece], style: LeafStyle) -> Result<Vec<Tree>, Flaw> {
     let mut trees = Vec::with_capacity(pieces.len());
     for piece in pieces {
         trees.extend(piece.tree(style)?);

@@ -7,8 +7,8 @@ use glam::DVec3;
 use jbt_model::bounds::Bounds;
 use jbt_model::builder::{Term, x, y, z};
 
-use super::parts::{HalfField, Parts, Round};
-use super::{Flaw, Leaf, LeafStyle, direction, frame, framed, least, length, positive};
+use super::make::{Flaw, LeafStyle, SolidLeaf, direction, frame, framed, least, length, positive};
+use super::parts::{HalfField, Revolved, SolidParts};
 
 /// How sharply the sides of a frame of these sizes bound a field: one half over the thickness, for each.
 fn sharpness<const N: usize>(sizes: [f64; N]) -> [f64; N] {
@@ -24,7 +24,7 @@ fn axes(z: DVec3, along: DVec3, name: &str) -> Result<[DVec3; 2], Flaw> {
 }
 
 /// From a base with half axes `r_1` (along A) and `r_2` to the apex: `x^2 + y^2 <= 1 - z`.
-pub(super) fn paraboloid(v: DVec3, h: DVec3, a: DVec3, [r_1, r_2]: [f64; 2]) -> Result<Leaf, Flaw> {
+pub(super) fn paraboloid(v: DVec3, h: DVec3, a: DVec3, [r_1, r_2]: [f64; 2]) -> Result<SolidLeaf, Flaw> {
     let (r_1, r_2) = (positive("r_1", r_1)?, positive("r_2", r_2)?);
     let [first, second] = axes(h, a, "A")?;
     let frame = frame(v, [first * r_1, second * r_2, h])?;
@@ -43,19 +43,19 @@ pub(super) fn hyperboloid(
     a: DVec3,
     [r_1, r_2, c]: [f64; 3],
     style: LeafStyle,
-) -> Result<Leaf, Flaw> {
+) -> Result<SolidLeaf, Flaw> {
     let (r_1, r_2) = (positive("r_1", r_1)?, positive("r_2", r_2)?);
     let [first, second] = axes(h, a, "A")?;
     let frame = frame(v, [first * r_1, second * r_2, h])?;
     let [side, base] = sharpness([0.5 * r_1.min(r_2), 0.5 * h.length()]);
     let c = asymptotes(c, h.length())?;
-    let round = Round {
+    let round = Revolved {
         first: [side * (1.0 + 2.0 * c).sqrt(), 0.0, 0.0],
         second: [0.0, 0.0, side * c],
         height: [side, 0.5 + side * (1.0 + c)],
     };
     let planes = vec![HalfField { slope: [0.0, 0.0, -base], offset: 0.5 }];
-    let inside = Parts { round: Some(round), planes, ..Parts::default() }.field(style);
+    let inside = SolidParts { round: Some(round), planes, ..SolidParts::default() }.field(style);
     let (above, below) = (0.5 / side, 0.5 / base);
     Ok(bowl_leaf(inside, &frame, hyperbola_width(c, below + above), [below, above]))
 }
@@ -76,14 +76,14 @@ fn hyperbola_width(c: f64, below: f64) -> f64 {
     (((1.0 + c + below).powi(2) - c * c) / (1.0 + 2.0 * c)).sqrt()
 }
 
-fn bowl_leaf(inside: Term, frame: &glam::DAffine3, wide: f64, [below, above]: [f64; 2]) -> Leaf {
+fn bowl_leaf(inside: Term, frame: &glam::DAffine3, wide: f64, [below, above]: [f64; 2]) -> SolidLeaf {
     let within = Bounds::new(DVec3::new(-wide, -wide, -below), DVec3::new(wide, wide, 1.0 + above));
     let bounds = Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 1.0));
     framed(inside, within, frame, bounds)
 }
 
 /// The parabola `y^2 <= 1 - z` over a base of half width r, z along B, drawn out along H.
-pub(super) fn parabolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64) -> Result<Leaf, Flaw> {
+pub(super) fn parabolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64) -> Result<SolidLeaf, Flaw> {
     let (frame, [side, base, ends]) = cylinder(v, h, b, r)?;
     let bow = (0.5 + side) - side * (y().square() + z());
     let inside = least([bow, 0.5 + base * z(), (0.5 + ends) - ends * x().abs()]);
@@ -92,7 +92,7 @@ pub(super) fn parabolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64) -> Result
 }
 
 /// The same with a hyperbola: `(1 + 2 c) y^2 <= (1 + c - z)^2 - c^2`.
-pub(super) fn hyperbolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64, c: f64) -> Result<Leaf, Flaw> {
+pub(super) fn hyperbolic_cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64, c: f64) -> Result<SolidLeaf, Flaw> {
     let (frame, [side, base, ends]) = cylinder(v, h, b, r)?;
     let c = asymptotes(c, b.length())?;
     let bow = hyperbola(c, side);
@@ -109,14 +109,20 @@ fn cylinder(v: DVec3, h: DVec3, b: DVec3, r: f64) -> Result<(glam::DAffine3, [f6
     Ok((frame, sharpness([0.5 * r, 0.5 * b.length(), 0.5 * h.length()])))
 }
 
-fn bow_leaf(inside: Term, frame: &glam::DAffine3, long: f64, wide: f64, [below, above]: [f64; 2]) -> Leaf {
+fn bow_leaf(
+    inside: Term,
+    frame: &glam::DAffine3,
+    long: f64,
+    wide: f64,
+    [below, above]: [f64; 2],
+) -> SolidLeaf {
     let within = Bounds::new(DVec3::new(-long, -wide, -below), DVec3::new(long, wide, 1.0 + above));
     let bounds = Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 1.0));
     framed(inside, within, frame, bounds)
 }
 
 /// A hyperboloid of one sheet: half axes A and b at both ends, and `bnr` times them in the middle of H.
-pub(super) fn waist(v: DVec3, h: DVec3, a: DVec3, b: f64, bnr: f64) -> Result<Leaf, Flaw> {
+pub(super) fn waist(v: DVec3, h: DVec3, a: DVec3, b: f64, bnr: f64) -> Result<SolidLeaf, Flaw> {
     let (b, bnr) = (positive("b", b)?, positive("bnr", bnr)?);
     let [first, second] = axes(h, a, "A")?;
     let wide = a.length();
