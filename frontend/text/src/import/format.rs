@@ -75,6 +75,8 @@ formats! {
     Rib = rib,
     /// A ParsIP scene: see [`parsip`](fn@super::parsip).
     Parsip = parsip,
+    /// A BRL-CAD database: see [`brlcad`](fn@super::brlcad).
+    Brlcad = brlcad,
     /// A program of instructions: see [`vm`](fn@super::vm).
     Vm = vm,
     /// The [text format](crate) of jbt; whatever no other format recognizes.

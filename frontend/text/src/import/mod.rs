@@ -3,6 +3,7 @@
 //! An importer reads bytes, never files, and reports every error with its place in those bytes. A feature
 //! that this project lacks is an error that names it, never a silent approximation.
 
+mod brlcad;
 mod format;
 mod imported;
 mod jbt;
@@ -14,6 +15,7 @@ mod tally;
 mod threejs;
 mod vm;
 
+pub use brlcad::brlcad;
 pub use format::SceneFormat;
 pub use imported::Imported;
 pub use parsip::parsip;
