@@ -20,10 +20,11 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`vt`"),
     attributes: None,
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+    let FileChoices { up, colors: encoding, .. } = choices;
     writeln!(out, "# jbt, {up} up")?;
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
@@ -57,7 +58,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    FileChoices { up, colors: encoding }: FileChoices,
+    FileChoices { up, colors: encoding, .. }: FileChoices,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

@@ -24,10 +24,11 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+    let FileChoices { up, colors: encoding, .. } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;
