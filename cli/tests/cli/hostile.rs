@@ -131,7 +131,10 @@ fn usage_errors() {
     folder.jbt(&["nothing"]).code(2).says("unrecognized subcommand");
     folder.jbt(&[]).code(2).says("Usage");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj, .stl, .3mf or .usda");
-    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("needs --format glb, ply, obj, stl, 3mf or usda");
+    folder
+        .jbt(&["mesh", "scene.jbt", "-o", "-"])
+        .code(2)
+        .says("needs --format glb, ply, obj, stl, 3mf or usda");
     mesh(&["--up", "x"]).code(2).says("y, z");
     mesh(&["--colors", "rgb"]).code(2).says("srgb, linear");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.stl", "--colors", "srgb"]).code(2).says("no colours");

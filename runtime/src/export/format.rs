@@ -113,9 +113,10 @@ impl ExportOptions {
 }
 
 impl FileChoices {
-    pub(super) fn new(format: Format, options: &ExportOptions) -> Self {
+    pub(super) fn new(mesh: &Mesh, format: Format, options: &ExportOptions) -> Self {
         Self {
             up: options.up_in(format),
+            model: mesh.orientation.up,
             colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear),
             unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
         }

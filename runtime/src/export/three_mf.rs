@@ -55,7 +55,7 @@ const fn unit(unit: LengthUnit) -> &'static str {
 }
 
 fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding, unit: length } = choices;
+    let FileChoices { colors: encoding, unit: length, .. } = choices;
     write!(out, "{HEAD}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{CORE}\"", unit(length))?;
     if colors(mesh).is_some() {
         write!(out, " xmlns:m=\"{MATERIALS}\"")?;
@@ -77,7 +77,7 @@ fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(
     let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
     writeln!(out, "<object id=\"2\" type=\"model\"{group}>\n<mesh>\n<vertices>")?;
     write_items(&mut out, mesh.positions.len(), |vertex, bytes| {
-        let [x, y, z] = up.place(mesh.positions[vertex]);
+        let [x, y, z] = choices.place(mesh.positions[vertex]);
         writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
     })?;
     writeln!(out, "</vertices>\n<triangles>")?;
@@ -92,7 +92,7 @@ fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(
         writeln!(bytes, "/>")
     })?;
     writeln!(out, "</triangles>\n</mesh>\n</object>\n</resources>\n<build>")?;
-    let [x, y, z] = up.place(mesh.origin);
+    let [x, y, z] = choices.place(mesh.origin);
     let moved = if mesh.is_about_world() {
         String::new()
     } else {

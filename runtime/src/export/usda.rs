@@ -27,7 +27,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
 const RESERVED: [&str; 2] = ["displayColor", "st"];
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding, unit } = choices;
+    let FileChoices { up, colors: encoding, unit, .. } = choices;
     let axis = match up {
         Up::Y => "Y",
         Up::Z => "Z",
@@ -36,13 +36,13 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
     writeln!(out, "    metersPerUnit = {}\n    upAxis = \"{axis}\"\n)\n", unit.metres())?;
     writeln!(out, "def Xform \"model\" (\n    kind = \"component\"\n)\n{{")?;
     if !mesh.is_about_world() {
-        let [x, y, z] = up.place(mesh.origin);
+        let [x, y, z] = choices.place(mesh.origin);
         writeln!(out, "    double3 xformOp:translate = ({x}, {y}, {z})")?;
         writeln!(out, "    uniform token[] xformOpOrder = [\"xformOp:translate\"]")?;
     }
     writeln!(out, "    def Mesh \"mesh\"\n    {{")?;
     let corner = |pick: fn(f32, f32) -> f32| {
-        let all = mesh.positions.iter().map(|&position| up.place(position));
+        let all = mesh.positions.iter().map(|&position| choices.place(position));
         all.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis]))).unwrap_or_default()
     };
     let tuple = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
@@ -60,8 +60,8 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         },
         "",
     )?;
-    list(out, "point3f[] points", vertices, |vertex| tuple(up.place(mesh.positions[vertex])), "")?;
-    list(out, "normal3f[] normals", vertices, |vertex| tuple(up.place(mesh.normals[vertex])), EACH)?;
+    list(out, "point3f[] points", vertices, |vertex| tuple(choices.place(mesh.positions[vertex])), "")?;
+    list(out, "normal3f[] normals", vertices, |vertex| tuple(choices.place(mesh.normals[vertex])), EACH)?;
     if let Some(colors) = colors(mesh) {
         let color = |vertex: usize| tuple(colors[vertex].map(|channel| encoding.encode(channel)));
         list(out, "color3f[] primvars:displayColor", vertices, color, EACH)?;
