@@ -26,7 +26,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use jbt::export::{ColorEncoding, Format, Up};
+use jbt::export::{ColorEncoding, Format, LengthUnit, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
@@ -112,7 +112,8 @@ differ from zero. docs/files.md says what each format holds, and how other progr
 
 Keys of --json that measure the mesh, in units and axes of the scene:
   bounds: [x0, y0, z0, x1, y1, z1] and size: [x, y, z] (null if it is empty), volume (null if it is not closed: it encloses
-  nothing then), area; of the file: format, up, colors (null if it has none)
+  nothing then), area; of the file: format, up, colors (null if it has none), unit (null if it
+  states none)
 
 Parts that are thinner than a cell are searched for, since no cell can show them. Keys of thin in --json (null
 with --no-thin):
@@ -137,6 +138,8 @@ pub struct MeshArguments {
     pub up: Option<Up>,
     #[arg(long, value_name = "ENCODING", value_parser = words(ColorEncoding::ALL, colors_in_words), help = colors_help())]
     pub colors: Option<ColorEncoding>,
+    #[arg(long, value_name = "UNIT", value_parser = words(LengthUnit::ALL, unit_in_words), help = unit_help())]
+    pub unit: Option<LengthUnit>,
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -164,6 +167,26 @@ fn colors_in_words(encoding: ColorEncoding) -> (&'static str, &'static str) {
         ColorEncoding::Linear => "As in the scene: 0.5 is 128 of 255",
     };
     (encoding.name(), help)
+}
+
+fn unit_in_words(unit: LengthUnit) -> (&'static str, &'static str) {
+    let help = match unit {
+        LengthUnit::Micrometre => "Micrometres",
+        LengthUnit::Millimetre => "Millimetres",
+        LengthUnit::Centimetre => "Centimetres",
+        LengthUnit::Inch => "Inches",
+        LengthUnit::Foot => "Feet",
+        LengthUnit::Metre => "Metres",
+    };
+    (unit.name(), help)
+}
+
+fn unit_help() -> String {
+    let usual = |format: Format| format.conventions().unit.map(LengthUnit::name);
+    format!(
+        "What a unit of the scene is, in files that say so; lengths stay as they are [default: {}]",
+        by_format(usual)
+    )
 }
 
 fn up_help() -> String {

@@ -5,7 +5,7 @@
 //! mesh      .glb .ply .obj .stl        the first one is written where nothing says which
 //! render    .png
 //! contour   .svg .png
-//! sample    .npy
+//! sample    .npy .vdb
 //! eval      .csv
 //! convert   .jbt
 //! ```
@@ -84,11 +84,16 @@ impl FileKind for SliceKind {
 pub enum ArrayKind {
     /// An array of numpy.
     Npy,
+    /// A sparse volume of OpenVDB.
+    Vdb,
 }
 
 impl FileKind for ArrayKind {
     const RESULT: &'static str = "an array";
-    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Npy, "npy", "An array for numpy")];
+    const ROWS: &'static [FormatRow<Self>] = &[
+        row(Self::Npy, "npy", "An array for numpy"),
+        row(Self::Vdb, "vdb", "A sparse volume of OpenVDB: points where the field is not 0"),
+    ];
 }
 
 /// What `jbt eval` writes.

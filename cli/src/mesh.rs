@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
-use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
+use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
 use jbt::mesh::ThinReport;
 use jbt::{Box3, MeshCounters, ModelOrigin, Polygonize, Polygonized};
 use serde_json::json;
@@ -69,7 +69,10 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
     if arguments.colors.is_some() && format.conventions().colors.is_none() {
         return Err(Failure::Usage(format!("a .{format} file has no colours that --colors could be about")));
     }
-    Ok(ExportOptions { up: arguments.up, colors: arguments.colors })
+    if arguments.unit.is_some() && format.conventions().unit.is_none() {
+        return Err(Failure::Usage(format!("a .{format} file states no unit that --unit could be about")));
+    }
+    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, unit: arguments.unit })
 }
 
 /// What may not be as people expect.
@@ -166,6 +169,7 @@ impl MeshSummary<'_> {
             "format": self.format.extension(),
             "up": self.options.up_in(self.format).name(),
             "colors": self.options.colors_in(self.format).map(ColorEncoding::name),
+            "unit": self.options.unit_in(self.format).map(LengthUnit::name),
             "cut_sides": report.cut_sides.to_string(),
             "field_evaluations": report.field_evaluations + report.jump_evaluations,
             "jump_evaluations": report.jump_evaluations,

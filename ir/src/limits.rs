@@ -29,7 +29,7 @@ pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 pub const MAX_ATTRIBUTES: usize = 32;
 /// Points of one skeleton, and numbers of one list.
 pub const MAX_SKELETON_POINTS: usize = 1 << 16;
-/// Planes of one convex solid that is given by them: its corners are found by cutting all faces by each plane.
+/// Planes of one convex solid that is given by them: its corners are found by cutting all faces by each.
 pub const MAX_PLANES: usize = 1 << 10;
 /// How often a cubic curve may be halved into pieces: 4096 of them deviate from their chords by 2^-24 of what
 /// it does.

@@ -66,7 +66,11 @@ fn groups_of_any_width_go_all_the_way() {
             match format {
                 Format::Glb => assert_eq!(names.matches("_MANY").count(), width.div_ceil(4), "{width} reals"),
                 Format::Ply => assert_eq!(names.matches("property float many").count(), width),
-                Format::Obj | Format::Stl => {}
+                Format::Usda => assert_eq!(
+                    names.matches(&format!("elementSize = {width}")).count(),
+                    usize::from(width > 1)
+                ),
+                Format::Obj | Format::Stl | Format::ThreeMf => {}
             }
         }
     }

@@ -35,7 +35,8 @@ fn every_object_is_the_set_that_others_found() {
         let (name, object) = found.find(|(name, object)| reads(&file(name), object)).expect("a file for it");
         let bytes = std::fs::read(file(name)).expect("a readable file");
         let options = Options { object: Some(object), ..Options::default() };
-        let tree = import::brlcad(&bytes, &options).expect("a good file").model.check().expect("a good model");
+        let tree =
+            import::brlcad(&bytes, &options).expect("a good file").model.check().expect("a good model");
         let mut reader = csv::Reader::from_path(file(&format!("{table}.oracle.csv"))).expect("a table");
         let rows: Vec<[f64; 11]> = reader.deserialize().map(|row| row.expect("a row")).collect();
         let points: Points = rows.iter().map(|row| [row[0] as f32, row[1] as f32, row[2] as f32]).collect();
@@ -50,7 +51,10 @@ fn every_object_is_the_set_that_others_found() {
                 for channel in 0..3 {
                     let expected = row[8 + channel];
                     let off = (f64::from(color[channel][index]) - expected).abs();
-                    assert!(row[3] == 0.0 || expected.is_nan() || off < COLOR, "{place}: colour off by {off}");
+                    assert!(
+                        row[3] == 0.0 || expected.is_nan() || off < COLOR,
+                        "{place}: colour off by {off}"
+                    );
                 }
             }
         }

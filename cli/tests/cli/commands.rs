@@ -549,9 +549,13 @@ fn sample_writes_an_array() {
     let at = |x: usize, y: usize, z: usize| numbers[(z * 5 + y) * 5 + x];
     assert_eq!((at(2, 2, 2), at(3, 2, 2), at(2, 2, 5)), (1.0, 0.5, 0.0));
 
-    let all =
-        folder.jbt(&[&["sample", "ball.jbt", "-o", "-", "--query", "all", "-q"][..], &lattice].concat());
+    let all = folder.jbt(
+        &[&["sample", "ball.jbt", "-o", "-", "--format", "npy", "--query", "all", "-q"][..], &lattice]
+            .concat(),
+    );
     assert_eq!(all.code(0).stdout_bytes().len(), 128 + 4 * 150 * 7);
+    folder.jbt(&[&["sample", "ball.jbt", "-o", "a.vdb"][..], &lattice].concat()).code(0);
+    assert!(folder.read("a.vdb").starts_with(b" BDV"));
     let huge = ["sample", "ball.jbt", "-o", "b.npy", "--resolution", "5000"];
     folder.jbt(&huge).code(3).says("more than 1073741824 numbers");
     folder.jbt(&["sample", "ball.jbt", "-o", "b.npy", "--cell", "0"]).code(2);

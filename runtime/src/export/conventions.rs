@@ -30,6 +30,59 @@ pub struct Conventions {
     pub attributes: Option<&'static str>,
     /// How it has the place of a mesh that is far from the origin of the world.
     pub far: FarMeshes,
+    /// The unit of lengths that a file states, unless [`ExportOptions::unit`](super::ExportOptions::unit)
+    /// says otherwise; `None` if it states none.
+    pub unit: Option<LengthUnit>,
+}
+
+/// What a unit of a scene is, in a file that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum LengthUnit {
+    /// 10^-6 m.
+    Micrometre,
+    /// 10^-3 m.
+    Millimetre,
+    /// 10^-2 m.
+    Centimetre,
+    /// 0.0254 m.
+    Inch,
+    /// 0.3048 m.
+    Foot,
+    /// The unit of SI.
+    Metre,
+}
+
+impl LengthUnit {
+    /// All, the smallest first.
+    pub const ALL: [Self; 6] =
+        [Self::Micrometre, Self::Millimetre, Self::Centimetre, Self::Inch, Self::Foot, Self::Metre];
+
+    /// The unit as a word: `um`, `mm`, `cm`, `in`, `ft` or `m`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Micrometre => "um",
+            Self::Millimetre => "mm",
+            Self::Centimetre => "cm",
+            Self::Inch => "in",
+            Self::Foot => "ft",
+            Self::Metre => "m",
+        }
+    }
+
+    /// How many metres it is.
+    #[must_use]
+    pub const fn metres(self) -> f64 {
+        match self {
+            Self::Micrometre => 1e-6,
+            Self::Millimetre => 1e-3,
+            Self::Centimetre => 1e-2,
+            Self::Inch => 0.0254,
+            Self::Foot => 0.3048,
+            Self::Metre => 1.0,
+        }
+    }
 }
 
 /// How a format has the place of a mesh with an [origin](crate::mesh::Mesh::origin) of its own.
@@ -143,6 +196,8 @@ pub(super) struct FileChoices {
     pub model: ModelUp,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,
+    /// Any, where a file states no unit.
+    pub unit: LengthUnit,
 }
 
 impl FileChoices {
@@ -159,6 +214,20 @@ impl FileChoices {
 impl fmt::Display for Up {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
+    }
+}
+
+impl fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = UnknownWord;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWord> {
+        find(&LengthUnit::ALL, word)
     }
 }
 

@@ -51,6 +51,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
     far: FarMeshes::Node,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {

@@ -20,6 +20,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`vt`"),
     attributes: None,
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {

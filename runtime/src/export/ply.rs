@@ -24,6 +24,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {

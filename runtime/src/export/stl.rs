@@ -29,6 +29,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: None,
     attributes: None,
     far: FarMeshes::Rounded,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
