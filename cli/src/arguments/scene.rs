@@ -23,7 +23,7 @@ pub struct SceneOptions {
     /// Read this object of a file that holds several, instead of those that no other object refers to
     #[arg(long, value_name = "NAME")]
     pub object: Option<String>,
-    /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored, coordinates stay
+    /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored
     #[arg(long)]
     pub mirror: bool,
 }

@@ -74,7 +74,7 @@ impl<'a> Frame<'a> {
             match &places {
                 Some(places) => {
                     frame.camera =
-                        frame.view.camera(render.aspect(), places, renderer.tree().orientation())?
+                        frame.view.camera(render.aspect(), places, renderer.tree().orientation())?;
                 }
                 None => frame.fit(&corners)?,
             }

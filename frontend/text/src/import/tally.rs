@@ -7,14 +7,14 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 /// Things that were left out, by what is said about them.
 #[derive(Default)]
-pub(super) struct Tally {
+pub(super) struct LeftOut {
     noted: Vec<(String, Span, usize)>,
     places: HashMap<String, usize>,
     /// How many had no room.
     others: usize,
 }
 
-impl Tally {
+impl LeftOut {
     /// Counts one more of the things about which this is said.
     pub(super) fn note(&mut self, span: Span, message: &str) {
         self.note_as(span, message, || message.to_owned());

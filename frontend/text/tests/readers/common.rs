@@ -79,8 +79,8 @@ fn rows(table: &Path, colors: [&str; 3]) -> Vec<Row> {
     reader.records().map(|record| row(record.unwrap())).collect()
 }
 
-/// Compares a model with a table, by the oracle and by its compiled program in f32. Where `colored` says so of
-/// a row's place, colours are compared. `exact` is how far the oracle may be off, for fields of about 1.
+/// Compares a model with a table, by the oracle and by its compiled program in f32. Where `colored` says so
+/// of a row's place, colours are compared. `exact` is how far the oracle may be off, for fields of about 1.
 #[track_caller]
 pub fn compare(
     model: &Model,

@@ -1,7 +1,7 @@
 //! Damaged files: each example is changed at random many times, always in the same ways, and whatever becomes
 //! of it is read or refused soon.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use fastrand::Rng;
 use jbt_model::diagnostic::Diagnostics;
@@ -101,7 +101,7 @@ fn damaged_files_are_read_or_refused_soon() {
     let times = count("JBT_READER_MUTATIONS", 2000);
     for (seed, (read, file)) in (0u64..).zip(files) {
         let mut rng = Rng::with_seed(seed);
-        let (mut slowest, mut good, start) = (Duration::ZERO, 0, Instant::now());
+        let mut good = 0;
         for _ in 0..times {
             let mut bytes = file.to_vec();
             for _ in 0..rng.usize(1..4) {
@@ -109,7 +109,6 @@ fn damaged_files_are_read_or_refused_soon() {
             }
             let took = ends(read, &bytes);
             assert!(took < Duration::from_secs(2), "{took:?}\n{}", String::from_utf8_lossy(&bytes));
-            slowest = slowest.max(took);
             if let Ok(Imported { model, .. }) = read(&bytes)
                 && model.check().is_ok_and(|tree| tree.nodes().len() < 10_000)
             {
@@ -117,7 +116,6 @@ fn damaged_files_are_read_or_refused_soon() {
                 good += 1;
             }
         }
-        println!("{seed}: {good} of {times} read, the slowest in {slowest:?}, all in {:?}", start.elapsed());
         assert!(good * 50 > times, "{good} of {times}: a file that is hardly ever read tells little");
     }
 }

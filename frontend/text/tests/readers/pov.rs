@@ -48,7 +48,6 @@ fn every_sample_agrees_with_its_table() {
             } else {
                 (object(bytes, chosen), format!("{stem}.{chosen}.oracle.csv"))
             };
-            println!("{name} {chosen}\n{}", messages(bytes, &imported.warnings));
             let positive = is_positive(&imported.model);
             compare(&imported.model, &folder.join(table), ["r", "g", "b"], 1e-8, &positive);
             tables += 1;

@@ -21,7 +21,6 @@ fn every_sample_agrees_with_its_table() {
             continue;
         }
         let imported = good(rib, bytes);
-        println!("{name}: {}", messages(bytes, &imported.warnings));
         let table = folder.join(name.replace(".rib", ".oracle.csv"));
         compare(&imported.model, &table, ["r", "g", "b"], 1e-8, &|_| true);
     }

@@ -68,7 +68,7 @@ impl Amount {
 
 /// An operator between two operands; later ones bind closer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Operator {
+pub(super) enum PovOperator {
     Or,
     And,
     Less,
@@ -86,7 +86,7 @@ pub(super) enum Operator {
 /// How far apart numbers count as equal in comparisons, as in the original.
 const EQUAL: f64 = 1e-10;
 
-impl Operator {
+impl PovOperator {
     pub(super) const fn precedence(self) -> u8 {
         match self {
             Self::Or => 1,
@@ -122,7 +122,7 @@ const fn truth(is: bool) -> f64 {
 
 /// What a function does.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Function {
+pub(super) enum PovFunction {
     One(fn(f64) -> f64),
     Two(fn(f64, f64) -> f64),
     /// Of at least one number.
@@ -138,48 +138,48 @@ pub(super) enum Function {
     Random,
 }
 
-const FUNCTIONS: &[(&str, Function)] = &[
-    ("sin", Function::One(f64::sin)),
-    ("cos", Function::One(f64::cos)),
-    ("tan", Function::One(f64::tan)),
-    ("asin", Function::One(f64::asin)),
-    ("acos", Function::One(f64::acos)),
-    ("atan", Function::One(f64::atan)),
-    ("atan2", Function::Two(f64::atan2)),
-    ("sinh", Function::One(f64::sinh)),
-    ("cosh", Function::One(f64::cosh)),
-    ("tanh", Function::One(f64::tanh)),
-    ("asinh", Function::One(f64::asinh)),
-    ("acosh", Function::One(f64::acosh)),
-    ("atanh", Function::One(f64::atanh)),
-    ("exp", Function::One(f64::exp)),
-    ("ln", Function::One(f64::ln)),
-    ("log", Function::One(f64::log10)),
-    ("sqrt", Function::One(f64::sqrt)),
-    ("sqr", Function::One(|x| x * x)),
-    ("pow", Function::Two(f64::powf)),
-    ("abs", Function::One(f64::abs)),
-    ("int", Function::One(f64::trunc)),
-    ("floor", Function::One(f64::floor)),
-    ("ceil", Function::One(f64::ceil)),
-    ("mod", Function::Two(|a, b| a % b)),
-    ("div", Function::Two(|a, b| (a / b).trunc())),
-    ("min", Function::Several(f64::min)),
-    ("max", Function::Several(f64::max)),
-    ("radians", Function::One(f64::to_radians)),
-    ("degrees", Function::One(f64::to_degrees)),
-    ("vlength", Function::Length),
-    ("vnormalize", Function::Normalize),
-    ("vdot", Function::Dot),
-    ("vcross", Function::Cross),
-    ("vrotate", Function::Rotate),
-    ("vaxis_rotate", Function::AxisRotate),
-    ("seed", Function::Seed),
-    ("rand", Function::Random),
+const FUNCTIONS: &[(&str, PovFunction)] = &[
+    ("sin", PovFunction::One(f64::sin)),
+    ("cos", PovFunction::One(f64::cos)),
+    ("tan", PovFunction::One(f64::tan)),
+    ("asin", PovFunction::One(f64::asin)),
+    ("acos", PovFunction::One(f64::acos)),
+    ("atan", PovFunction::One(f64::atan)),
+    ("atan2", PovFunction::Two(f64::atan2)),
+    ("sinh", PovFunction::One(f64::sinh)),
+    ("cosh", PovFunction::One(f64::cosh)),
+    ("tanh", PovFunction::One(f64::tanh)),
+    ("asinh", PovFunction::One(f64::asinh)),
+    ("acosh", PovFunction::One(f64::acosh)),
+    ("atanh", PovFunction::One(f64::atanh)),
+    ("exp", PovFunction::One(f64::exp)),
+    ("ln", PovFunction::One(f64::ln)),
+    ("log", PovFunction::One(f64::log10)),
+    ("sqrt", PovFunction::One(f64::sqrt)),
+    ("sqr", PovFunction::One(|x| x * x)),
+    ("pow", PovFunction::Two(f64::powf)),
+    ("abs", PovFunction::One(f64::abs)),
+    ("int", PovFunction::One(f64::trunc)),
+    ("floor", PovFunction::One(f64::floor)),
+    ("ceil", PovFunction::One(f64::ceil)),
+    ("mod", PovFunction::Two(|a, b| a % b)),
+    ("div", PovFunction::Two(|a, b| (a / b).trunc())),
+    ("min", PovFunction::Several(f64::min)),
+    ("max", PovFunction::Several(f64::max)),
+    ("radians", PovFunction::One(f64::to_radians)),
+    ("degrees", PovFunction::One(f64::to_degrees)),
+    ("vlength", PovFunction::Length),
+    ("vnormalize", PovFunction::Normalize),
+    ("vdot", PovFunction::Dot),
+    ("vcross", PovFunction::Cross),
+    ("vrotate", PovFunction::Rotate),
+    ("vaxis_rotate", PovFunction::AxisRotate),
+    ("seed", PovFunction::Seed),
+    ("rand", PovFunction::Random),
 ];
 
 /// The function of a name.
-pub(super) fn function(name: &str) -> Option<Function> {
+pub(super) fn function(name: &str) -> Option<PovFunction> {
     FUNCTIONS.iter().find(|(known, _)| *known == name).map(|&(_, function)| function)
 }
 
@@ -202,7 +202,7 @@ impl Streams {
     }
 }
 
-impl Function {
+impl PovFunction {
     /// The value for these arguments; an error says what is wrong with them.
     pub(super) fn call(self, arguments: &[Amount], streams: &mut Streams) -> Result<Amount, String> {
         if let Some(&unknown) = arguments.iter().find(|argument| matches!(argument, Amount::Unknown(_))) {

@@ -6,20 +6,20 @@ use glam::{DAffine3, DVec3};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::skeleton::{Point, Segment};
 
-use super::open::{ComponentFrame, Frame, Modifier};
-use super::scan::Token;
+use super::open::{ComponentFrame, Modifier, PovFrame};
+use super::scan::PovToken;
 use super::script::{Script, Value};
-use super::shape::{Blob, Component, PlacedBlob, Shapes};
+use super::shape::{Component, PlacedBlob, PovBlob, PovShapes};
 
 /// Smallest strength and squared radius of a component that counts, as in the original.
 const NOTHING: f64 = 1e-10;
 
 impl Script<'_> {
-    pub(super) fn in_blob(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn in_blob(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b'}') => return self.close_blob(),
-            Token::Mark(b',') => return Ok(()),
-            Token::Word => {}
+            PovToken::Mark(b'}') => return self.close_blob(),
+            PovToken::Mark(b',') => return Ok(()),
+            PovToken::Word => {}
             _ => return Err(self.scanner.unexpected(token, span).expected("expected a component")),
         }
         let word = self.scanner.word(span);
@@ -44,7 +44,7 @@ impl Script<'_> {
                     map: DAffine3::IDENTITY,
                     color: None,
                 };
-                self.open(Frame::Component(frame), span)
+                self.open(PovFrame::Component(frame), span)
             }
             "component" => self.old_component(span),
             _ => match self.modifier(word, span)? {
@@ -58,8 +58,8 @@ impl Script<'_> {
         }
     }
 
-    pub(super) fn with_blob(&mut self, change: impl FnOnce(&mut Blob)) {
-        if let Some((Frame::Blob(blob), _)) = self.frames.last_mut() {
+    pub(super) fn with_blob(&mut self, change: impl FnOnce(&mut PovBlob)) {
+        if let Some((PovFrame::Blob(blob), _)) = self.frames.last_mut() {
             change(blob);
         }
     }
@@ -73,13 +73,13 @@ impl Script<'_> {
         if let Some(placed) = known {
             self.spend(4 * placed.blob.components.len(), span)?;
             self.with_blob(|blob| {
-                let Blob { threshold, components, map, color, .. } = (*placed.blob).clone();
-                *blob = Blob { threshold, components, map: placed.map * map, color, span: blob.span };
+                let PovBlob { threshold, components, map, color, .. } = (*placed.blob).clone();
+                *blob = PovBlob { threshold, components, map: placed.map * map, color, span: blob.span };
             });
             return Ok(());
         }
         let shown = self.scanner.shown(span);
-        let error = if self.scanner.peek()?.0 == Token::Mark(b'(') {
+        let error = if self.scanner.peek()?.0 == PovToken::Mark(b'(') {
             Diagnostic::error(Some(span), format!("the macro `{shown}` is called in a blob, and is not run"))
         } else {
             Diagnostic::error(Some(span), format!("unexpected `{shown}`"))
@@ -101,21 +101,21 @@ impl Script<'_> {
         self.add_component(frame, span)
     }
 
-    pub(super) fn in_component(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn in_component(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b'}') => {
-                let Some((Frame::Component(frame), begin)) = self.frames.pop() else { return Ok(()) };
+            PovToken::Mark(b'}') => {
+                let Some((PovFrame::Component(frame), begin)) = self.frames.pop() else { return Ok(()) };
                 return self.add_component(frame, begin);
             }
-            Token::Mark(b',') => return Ok(()),
-            Token::Word => {
+            PovToken::Mark(b',') => return Ok(()),
+            PovToken::Word => {
                 let word = self.scanner.word(span);
                 if word == "strength" {
                     return Ok(());
                 }
                 match self.modifier(word, span)? {
                     Modifier::Map(map) => {
-                        if let Some((Frame::Component(frame), _)) = self.frames.last_mut() {
+                        if let Some((PovFrame::Component(frame), _)) = self.frames.last_mut() {
                             frame.map = map * frame.map;
                         }
                         return Ok(());
@@ -124,17 +124,17 @@ impl Script<'_> {
                     Modifier::None => {}
                 }
             }
-            Token::End
-            | Token::Text
-            | Token::Number(_)
-            | Token::Mark(_)
-            | Token::AtMost
-            | Token::AtLeast
-            | Token::Unequal => {}
+            PovToken::End
+            | PovToken::Text
+            | PovToken::Number(_)
+            | PovToken::Mark(_)
+            | PovToken::AtMost
+            | PovToken::AtLeast
+            | PovToken::Unequal => {}
         }
         self.scanner.go(span.start as usize);
         let amount = self.expression()?;
-        if let Some((Frame::Component(frame), _)) = self.frames.last_mut() {
+        if let Some((PovFrame::Component(frame), _)) = self.frames.last_mut() {
             if frame.arguments.len() == 4 {
                 return Err(Diagnostic::error(Some(span), "the component has too many numbers"));
             }
@@ -178,9 +178,9 @@ impl Script<'_> {
     }
 
     pub(super) fn close_blob(&mut self) -> Result<(), Diagnostic> {
-        let Some((Frame::Blob(mut blob), span)) = self.frames.pop() else { return Ok(()) };
+        let Some((PovFrame::Blob(mut blob), span)) = self.frames.pop() else { return Ok(()) };
         blob.color = blob.color.or(self.default_color);
-        let mut shapes = Shapes::default();
+        let mut shapes = PovShapes::default();
         if blob.components.is_empty() {
             self.left_out.note(span, "the blob has no components");
         } else {

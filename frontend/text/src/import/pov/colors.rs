@@ -3,7 +3,7 @@
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::Amount;
-use super::scan::Token;
+use super::scan::PovToken;
 use super::script::{Script, Value};
 use super::shape::Color;
 use crate::import::srgb;
@@ -114,7 +114,7 @@ impl Script<'_> {
     /// Whether the next token is a colour in a vector or in words.
     pub(super) fn is_color_next(&mut self) -> Result<bool, Diagnostic> {
         let (token, _) = self.scanner.peek()?;
-        Ok(token == Token::Mark(b'<') || self.scanner.peek_word()?.is_some_and(begins))
+        Ok(token == PovToken::Mark(b'<') || self.scanner.peek_word()?.is_some_and(begins))
     }
 }
 

@@ -5,8 +5,8 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::Amount;
 use super::colors;
-use super::open::{Block, Frame};
-use super::scan::Token;
+use super::open::{PovBlock, PovFrame};
+use super::scan::PovToken;
 use super::script::{Script, Value};
 
 /// How far beyond its last value a loop may go, for rounding.
@@ -35,14 +35,14 @@ impl Script<'_> {
                 self.scanner.expect(b'(')?;
                 let (name, _) = self.scanner.expect_word("a name")?;
                 let known = self.value(name).is_some() || colors::color(name).is_some();
-                if self.scanner.peek()?.0 == Token::Mark(b'[') {
+                if self.scanner.peek()?.0 == PovToken::Mark(b'[') {
                     self.skip_balanced(b'[', b']')?;
                 }
                 self.scanner.expect(b')')?;
                 self.branch(known == (word == "ifdef"), span)
             }
             "else" | "elseif" => match self.blocks.pop() {
-                Some((Block::If | Block::Switch, begin)) => self.skip_to_end(begin).map(|_| ()),
+                Some((PovBlock::If | PovBlock::Switch, begin)) => self.skip_to_end(begin).map(|_| ()),
                 _ => Err(lonely(word, span)),
             },
             "while" => {
@@ -53,7 +53,7 @@ impl Script<'_> {
             "switch" => self.switch(span),
             "case" | "range" => match self.blocks.last() {
                 // The case before goes on into this one.
-                Some((Block::Switch, _)) => self.skip_balanced(b'(', b')'),
+                Some((PovBlock::Switch, _)) => self.skip_balanced(b'(', b')'),
                 _ => Err(lonely(word, span)),
             },
             "break" => self.break_out(span),
@@ -63,7 +63,7 @@ impl Script<'_> {
             "version" => self.version(),
             "default" => {
                 self.scanner.expect(b'{')?;
-                self.open(Frame::default_look(), span)
+                self.open(PovFrame::default_look(), span)
             }
             "debug" | "warning" | "statistics" | "render" => self.text_line(),
             "error" => Err(Diagnostic::error(Some(span), "the scene itself ends here with an error")),
@@ -74,7 +74,7 @@ impl Script<'_> {
         }
     }
 
-    fn block(&mut self, block: Block, span: Span) -> Result<(), Diagnostic> {
+    fn block(&mut self, block: PovBlock, span: Span) -> Result<(), Diagnostic> {
         if self.blocks.len() == MAX_BLOCK_DEPTH {
             let message = format!("more than {MAX_BLOCK_DEPTH} directives within each other");
             return Err(Diagnostic::limit(Some(span), message));
@@ -86,14 +86,14 @@ impl Script<'_> {
     /// Takes the first branch of a choice, or looks for another one.
     fn branch(&mut self, holds: bool, span: Span) -> Result<(), Diagnostic> {
         if holds {
-            return self.block(Block::If, span);
+            return self.block(PovBlock::If, span);
         }
         loop {
             match self.skip(span, &["else", "elseif", "end"])? {
-                "else" => return self.block(Block::If, span),
+                "else" => return self.block(PovBlock::If, span),
                 "elseif" => {
                     if self.condition()? {
-                        return self.block(Block::If, span);
+                        return self.block(PovBlock::If, span);
                     }
                 }
                 _ => return Ok(()),
@@ -106,7 +106,7 @@ impl Script<'_> {
         let asked = self.asked;
         if self.condition()? {
             let constant = self.asked == asked;
-            return self.block(Block::While { condition, constant }, span);
+            return self.block(PovBlock::While { condition, constant }, span);
         }
         self.skip_to_end(span).map(|_| ())
     }
@@ -131,12 +131,12 @@ impl Script<'_> {
             return Err(error.expected("expected (name, first, last), with a step that is not 0"));
         }
         let body = self.scanner.place();
-        self.count_on(Block::For { name, value, last, step, body }, span)
+        self.count_on(PovBlock::For { name, value, last, step, body }, span)
     }
 
     /// Goes around a counting loop, or behind it.
-    fn count_on(&mut self, block: Block, span: Span) -> Result<(), Diagnostic> {
-        let Block::For { name, value, last, step, .. } = &block else { return Ok(()) };
+    fn count_on(&mut self, block: PovBlock, span: Span) -> Result<(), Diagnostic> {
+        let PovBlock::For { name, value, last, step, .. } = &block else { return Ok(()) };
         let over = if *step > 0.0 { *value > last + SLACK } else { *value < last - SLACK };
         let value = Value::Amount(Amount::Number(*value));
         let name = name.clone();
@@ -152,7 +152,7 @@ impl Script<'_> {
         self.scanner.expect(b')')?;
         loop {
             match self.skip(span, &["case", "range", "else", "end"])? {
-                "else" => return self.block(Block::Switch, span),
+                "else" => return self.block(PovBlock::Switch, span),
                 "end" => return Ok(()),
                 word => {
                     self.scanner.expect(b'(')?;
@@ -166,7 +166,7 @@ impl Script<'_> {
                     }
                     self.scanner.expect(b')')?;
                     if value >= low - SLACK && value <= high + SLACK {
-                        return self.block(Block::Switch, span);
+                        return self.block(PovBlock::Switch, span);
                     }
                 }
             }
@@ -177,7 +177,7 @@ impl Script<'_> {
     fn break_out(&mut self, span: Span) -> Result<(), Diagnostic> {
         loop {
             match self.blocks.pop() {
-                Some((Block::If, begin)) => {
+                Some((PovBlock::If, begin)) => {
                     self.skip_to_end(begin)?;
                 }
                 Some((_, begin)) => return self.skip_to_end(begin).map(|_| ()),
@@ -190,8 +190,8 @@ impl Script<'_> {
         let behind = self.scanner.place();
         match self.blocks.pop() {
             None => Err(lonely("end", span)),
-            Some((Block::If | Block::Switch, _)) => Ok(()),
-            Some((Block::While { condition, constant }, begin)) => {
+            Some((PovBlock::If | PovBlock::Switch, _)) => Ok(()),
+            Some((PovBlock::While { condition, constant }, begin)) => {
                 if constant && !self.scanner.holds(condition, behind, b"break") {
                     let error = Diagnostic::error(Some(begin), "the loop never ends");
                     return Err(error.expected("expected a condition that can change"));
@@ -200,10 +200,10 @@ impl Script<'_> {
                 self.scanner.go(condition);
                 self.turn(condition, begin)
             }
-            Some((Block::For { name, value, last, step, body }, begin)) => {
+            Some((PovBlock::For { name, value, last, step, body }, begin)) => {
                 self.spend(1 + (behind - body) / STEP_BYTES, begin)?;
                 self.scanner.go(body);
-                self.count_on(Block::For { name, value: value + step, last, step, body }, begin)
+                self.count_on(PovBlock::For { name, value: value + step, last, step, body }, begin)
             }
         }
     }
@@ -219,11 +219,11 @@ impl Script<'_> {
         loop {
             let (token, _) = self.scanner.next()?;
             match token {
-                Token::End => {
+                PovToken::End => {
                     let error = Diagnostic::error(Some(begin), "the directive has no end");
                     return Err(error.expected("expected `#end`"));
                 }
-                Token::Mark(b'#') => {}
+                PovToken::Mark(b'#') => {}
                 _ => continue,
             }
             let Some(word) = self.scanner.peek_word()? else { continue };
@@ -244,7 +244,7 @@ impl Script<'_> {
     /// `NAME = value`, with or without a semicolon.
     fn declaration(&mut self) -> Result<(), Diagnostic> {
         let (name, span) = self.scanner.expect_word("a name")?;
-        if self.scanner.peek()?.0 == Token::Mark(b'[') {
+        if self.scanner.peek()?.0 == PovToken::Mark(b'[') {
             // An array's member: no name of its own, so its value has no reader.
             self.skip_balanced(b'[', b']')?;
         }
@@ -260,7 +260,7 @@ impl Script<'_> {
     /// Another file. The names of the usual colours are known without it.
     fn include(&mut self, span: Span) -> Result<(), Diagnostic> {
         let (token, at) = self.scanner.next()?;
-        if token != Token::Text {
+        if token != PovToken::Text {
             return Err(self.scanner.unexpected(token, at).expected("expected the name of a file"));
         }
         let name = format!("\"{}\"", self.scanner.shown(at));

@@ -5,35 +5,35 @@
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::amount::{Amount, Function, Operator, function};
-use super::scan::Token;
+use super::amount::{Amount, PovFunction, PovOperator, function};
+use super::scan::PovToken;
 use super::script::{Script, Value};
 
 /// What waits for operands.
-enum Waiting {
-    Binary(Operator),
+enum PovWaiting {
+    Binary(PovOperator),
     Negate,
     Not,
     /// `c ?`, and then `c ? a :`.
     Question,
     Colon,
-    Bracket(Bracket, Span),
+    Bracket(PovBracket, Span),
 }
 
 /// An open bracket.
-enum Bracket {
+enum PovBracket {
     Parenthesis,
     /// The number of operands before it.
     Vector(usize),
     /// A call, with the number of operands before it; `None` for a name that is no function here.
-    Call(Option<Function>, usize),
+    Call(Option<PovFunction>, usize),
 }
 
 /// The state of reading an expression.
 #[derive(Default)]
-struct Stacks {
+struct OperandStacks {
     operands: Vec<Amount>,
-    waiting: Vec<Waiting>,
+    waiting: Vec<PovWaiting>,
     /// The places of open brackets among what waits.
     open: Vec<usize>,
 }
@@ -41,60 +41,60 @@ struct Stacks {
 impl Script<'_> {
     /// An expression, up to the first token that is not a part of it.
     pub(super) fn expression(&mut self) -> Result<Amount, Diagnostic> {
-        self.bracketed(Stacks::default())
+        self.bracketed(OperandStacks::default())
     }
 
     /// A condition in its parentheses.
     pub(super) fn condition(&mut self) -> Result<bool, Diagnostic> {
         let span = self.scanner.expect(b'(')?;
-        let mut stacks = Stacks::default();
-        stacks.open(Bracket::Parenthesis, span);
+        let mut stacks = OperandStacks::default();
+        stacks.open(PovBracket::Parenthesis, span);
         let amount = self.bracketed(stacks)?;
         Ok(self.real(amount, span)? != 0.0)
     }
 
-    fn bracketed(&mut self, mut stacks: Stacks) -> Result<Amount, Diagnostic> {
+    fn bracketed(&mut self, mut stacks: OperandStacks) -> Result<Amount, Diagnostic> {
         let is_condition = !stacks.waiting.is_empty();
         loop {
             self.operand(&mut stacks)?;
             // What follows an operand, until another one is due.
             loop {
                 let (token, span) = self.scanner.peek()?;
-                if token == Token::Mark(b'.') {
+                if token == PovToken::Mark(b'.') {
                     self.access(&mut stacks)?;
                     continue;
                 }
-                let relational = stacks.innermost().is_some_and(|one| !matches!(one, Bracket::Vector(_)));
+                let relational = stacks.innermost().is_some_and(|one| !matches!(one, PovBracket::Vector(_)));
                 if let Some(operator) = operator(token, relational) {
                     self.scanner.next()?;
                     stacks.reduce(operator.precedence());
-                    stacks.waiting.push(Waiting::Binary(operator));
+                    stacks.waiting.push(PovWaiting::Binary(operator));
                     break;
                 }
                 match token {
-                    Token::Mark(b'?') if relational => {
+                    PovToken::Mark(b'?') if relational => {
                         self.scanner.next()?;
                         stacks.reduce(1);
-                        stacks.waiting.push(Waiting::Question);
+                        stacks.waiting.push(PovWaiting::Question);
                         break;
                     }
-                    Token::Mark(b':') if relational => {
+                    PovToken::Mark(b':') if relational => {
                         self.scanner.next()?;
                         stacks.reduce(0);
-                        if !matches!(stacks.waiting.last(), Some(Waiting::Question)) {
+                        if !matches!(stacks.waiting.last(), Some(PovWaiting::Question)) {
                             let error = self.scanner.unexpected(token, span);
                             return Err(error.expected("expected `condition ? a : b`"));
                         }
                         stacks.waiting.pop();
-                        stacks.waiting.push(Waiting::Colon);
+                        stacks.waiting.push(PovWaiting::Colon);
                         break;
                     }
-                    Token::Mark(b',') if !stacks.waiting.is_empty() && stacks.takes_comma() => {
+                    PovToken::Mark(b',') if !stacks.waiting.is_empty() && stacks.takes_comma() => {
                         self.scanner.next()?;
                         stacks.reduce(0);
                         break;
                     }
-                    Token::Mark(b')' | b'>') if stacks.innermost().is_some() => {
+                    PovToken::Mark(b')' | b'>') if stacks.innermost().is_some() => {
                         self.close(&mut stacks, token, span)?;
                         if is_condition && stacks.waiting.is_empty() {
                             return Ok(stacks.operands.pop().unwrap_or(Amount::Unknown(span)));
@@ -104,7 +104,7 @@ impl Script<'_> {
                         stacks.reduce(0);
                         return match stacks.waiting.last() {
                             None => Ok(stacks.operands.pop().unwrap_or(Amount::Unknown(span))),
-                            Some(Waiting::Bracket(_, open)) => {
+                            Some(PovWaiting::Bracket(_, open)) => {
                                 let error = self.scanner.unexpected(token, span);
                                 let line = self.scanner.shown(*open);
                                 Err(error.expected(format!("expected the end of `{line}` before it")))
@@ -118,35 +118,35 @@ impl Script<'_> {
     }
 
     /// One operand, with the signs and brackets before it.
-    fn operand(&mut self, stacks: &mut Stacks) -> Result<(), Diagnostic> {
+    fn operand(&mut self, stacks: &mut OperandStacks) -> Result<(), Diagnostic> {
         loop {
             let (token, span) = self.scanner.next()?;
             match token {
-                Token::Mark(b'+') => {}
-                Token::Mark(b'-') => stacks.waiting.push(Waiting::Negate),
-                Token::Mark(b'!') => stacks.waiting.push(Waiting::Not),
-                Token::Mark(b'(') => stacks.open(Bracket::Parenthesis, span),
-                Token::Mark(b'<') => {
+                PovToken::Mark(b'+') => {}
+                PovToken::Mark(b'-') => stacks.waiting.push(PovWaiting::Negate),
+                PovToken::Mark(b'!') => stacks.waiting.push(PovWaiting::Not),
+                PovToken::Mark(b'(') => stacks.open(PovBracket::Parenthesis, span),
+                PovToken::Mark(b'<') => {
                     let before = stacks.operands.len();
-                    stacks.open(Bracket::Vector(before), span);
+                    stacks.open(PovBracket::Vector(before), span);
                 }
-                Token::Number(number) => {
+                PovToken::Number(number) => {
                     stacks.operands.push(Amount::Number(number));
                     return Ok(());
                 }
-                Token::Text => {
+                PovToken::Text => {
                     stacks.operands.push(Amount::Unknown(span));
                     return Ok(());
                 }
-                Token::Word => {
+                PovToken::Word => {
                     let word = self.scanner.word(span);
                     let known = self.value(word).is_some();
-                    if !known && self.scanner.peek()?.0 == Token::Mark(b'(') {
+                    if !known && self.scanner.peek()?.0 == PovToken::Mark(b'(') {
                         self.scanner.next()?;
                         self.spend(1, span)?;
-                        let call = Bracket::Call(function(word), stacks.operands.len());
+                        let call = PovBracket::Call(function(word), stacks.operands.len());
                         stacks.open(call, span);
-                        if self.scanner.peek()?.0 == Token::Mark(b')') {
+                        if self.scanner.peek()?.0 == PovToken::Mark(b')') {
                             let (token, span) = self.scanner.peek()?;
                             return self.close(stacks, token, span);
                         }
@@ -156,7 +156,11 @@ impl Script<'_> {
                     stacks.operands.push(amount);
                     return Ok(());
                 }
-                Token::Mark(_) | Token::AtMost | Token::AtLeast | Token::Unequal | Token::End => {
+                PovToken::Mark(_)
+                | PovToken::AtMost
+                | PovToken::AtLeast
+                | PovToken::Unequal
+                | PovToken::End => {
                     return Err(self
                         .scanner
                         .unexpected(token, span)
@@ -200,8 +204,8 @@ impl Script<'_> {
     fn skip_arguments(&mut self) -> Result<(), Diagnostic> {
         loop {
             match self.scanner.peek()?.0 {
-                Token::Mark(b'[') => self.skip_balanced(b'[', b']')?,
-                Token::Mark(b'(') => self.skip_balanced(b'(', b')')?,
+                PovToken::Mark(b'[') => self.skip_balanced(b'[', b']')?,
+                PovToken::Mark(b'(') => self.skip_balanced(b'(', b')')?,
                 _ => return Ok(()),
             }
         }
@@ -213,9 +217,9 @@ impl Script<'_> {
         let mut depth = 0usize;
         loop {
             match self.scanner.next()?.0 {
-                Token::Mark(mark) if mark == open => depth += 1,
-                Token::Mark(mark) if mark == close => depth = depth.saturating_sub(1),
-                Token::End => return Err(Diagnostic::error(Some(begin), "the bracket is not closed")),
+                PovToken::Mark(mark) if mark == open => depth += 1,
+                PovToken::Mark(mark) if mark == close => depth = depth.saturating_sub(1),
+                PovToken::End => return Err(Diagnostic::error(Some(begin), "the bracket is not closed")),
                 _ => {}
             }
             if depth == 0 {
@@ -225,7 +229,7 @@ impl Script<'_> {
     }
 
     /// `.x` and the like, behind an operand.
-    fn access(&mut self, stacks: &mut Stacks) -> Result<(), Diagnostic> {
+    fn access(&mut self, stacks: &mut OperandStacks) -> Result<(), Diagnostic> {
         self.scanner.next()?;
         let (word, span) = self.scanner.expect_word("the name of a component")?;
         let place = match word {
@@ -234,7 +238,7 @@ impl Script<'_> {
             "z" | "blue" => 2,
             "t" | "filter" => 3,
             "transmit" => 4,
-            _ => return Err(self.scanner.unexpected(Token::Word, span).expected("expected x, y, z or t")),
+            _ => return Err(self.scanner.unexpected(PovToken::Word, span).expected("expected x, y, z or t")),
         };
         if let Some(last) = stacks.operands.last_mut() {
             *last = last.component(place);
@@ -243,34 +247,35 @@ impl Script<'_> {
     }
 
     /// Closes the innermost bracket, at its mark.
-    fn close(&mut self, stacks: &mut Stacks, token: Token, span: Span) -> Result<(), Diagnostic> {
+    fn close(&mut self, stacks: &mut OperandStacks, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         self.scanner.next()?;
         stacks.reduce(0);
-        let Some(Waiting::Bracket(bracket, open)) = stacks.waiting.pop() else {
+        let Some(PovWaiting::Bracket(bracket, open)) = stacks.waiting.pop() else {
             return Err(self.scanner.unexpected(token, span).expected("expected `:`"));
         };
         stacks.open.pop();
         let fits = match bracket {
-            Bracket::Vector(_) => token == Token::Mark(b'>'),
-            Bracket::Parenthesis | Bracket::Call(..) => token == Token::Mark(b')'),
+            PovBracket::Vector(_) => token == PovToken::Mark(b'>'),
+            PovBracket::Parenthesis | PovBracket::Call(..) => token == PovToken::Mark(b')'),
         };
         if !fits {
-            let mark = if matches!(bracket, Bracket::Vector(_)) { '>' } else { ')' };
+            let mark = if matches!(bracket, PovBracket::Vector(_)) { '>' } else { ')' };
             return Err(self.scanner.unexpected(token, span).expected(format!("expected `{mark}`")));
         }
         match bracket {
-            Bracket::Parenthesis => {}
-            Bracket::Vector(before) => {
+            PovBracket::Parenthesis => {}
+            PovBracket::Vector(before) => {
                 let numbers: Vec<Amount> = stacks.operands.drain(before..).collect();
                 let amount = self.make_vector(&numbers, Span { start: open.start, end: span.end })?;
                 stacks.operands.push(amount);
             }
-            Bracket::Call(function, before) => {
+            PovBracket::Call(function, before) => {
                 let arguments: Vec<Amount> = stacks.operands.drain(before..).collect();
                 let value = match function {
                     None => Amount::Unknown(open),
                     Some(function) => {
-                        self.asked += usize::from(matches!(function, Function::Random | Function::Seed));
+                        self.asked +=
+                            usize::from(matches!(function, PovFunction::Random | PovFunction::Seed));
                         function
                             .call(&arguments, &mut self.streams)
                             .map_err(|message| Diagnostic::error(Some(open), message))?
@@ -302,64 +307,70 @@ impl Script<'_> {
 }
 
 /// The operator of a token; comparisons only where they may stand.
-fn operator(token: Token, relational: bool) -> Option<Operator> {
+fn operator(token: PovToken, relational: bool) -> Option<PovOperator> {
     let found = match token {
-        Token::Mark(b'+') => Operator::Add,
-        Token::Mark(b'-') => Operator::Subtract,
-        Token::Mark(b'*') => Operator::Multiply,
-        Token::Mark(b'/') => Operator::Divide,
-        Token::Mark(b'|') => Operator::Or,
-        Token::Mark(b'&') => Operator::And,
-        Token::Mark(b'<') => Operator::Less,
-        Token::Mark(b'>') => Operator::Greater,
-        Token::Mark(b'=') => Operator::Equal,
-        Token::AtMost => Operator::AtMost,
-        Token::AtLeast => Operator::AtLeast,
-        Token::Unequal => Operator::Unequal,
-        Token::Word | Token::Number(_) | Token::Text | Token::Mark(_) | Token::End => return None,
+        PovToken::Mark(b'+') => PovOperator::Add,
+        PovToken::Mark(b'-') => PovOperator::Subtract,
+        PovToken::Mark(b'*') => PovOperator::Multiply,
+        PovToken::Mark(b'/') => PovOperator::Divide,
+        PovToken::Mark(b'|') => PovOperator::Or,
+        PovToken::Mark(b'&') => PovOperator::And,
+        PovToken::Mark(b'<') => PovOperator::Less,
+        PovToken::Mark(b'>') => PovOperator::Greater,
+        PovToken::Mark(b'=') => PovOperator::Equal,
+        PovToken::AtMost => PovOperator::AtMost,
+        PovToken::AtLeast => PovOperator::AtLeast,
+        PovToken::Unequal => PovOperator::Unequal,
+        PovToken::Word | PovToken::Number(_) | PovToken::Text | PovToken::Mark(_) | PovToken::End => {
+            return None;
+        }
     };
     (relational || found.precedence() > 3).then_some(found)
 }
 
-impl Stacks {
-    fn open(&mut self, bracket: Bracket, span: Span) {
+impl OperandStacks {
+    fn open(&mut self, bracket: PovBracket, span: Span) {
         self.open.push(self.waiting.len());
-        self.waiting.push(Waiting::Bracket(bracket, span));
+        self.waiting.push(PovWaiting::Bracket(bracket, span));
     }
 
     /// The innermost bracket that is open.
-    fn innermost(&self) -> Option<&Bracket> {
+    fn innermost(&self) -> Option<&PovBracket> {
         match &self.waiting[*self.open.last()?] {
-            Waiting::Bracket(bracket, _) => Some(bracket),
-            Waiting::Binary(_) | Waiting::Negate | Waiting::Not | Waiting::Question | Waiting::Colon => None,
+            PovWaiting::Bracket(bracket, _) => Some(bracket),
+            PovWaiting::Binary(_)
+            | PovWaiting::Negate
+            | PovWaiting::Not
+            | PovWaiting::Question
+            | PovWaiting::Colon => None,
         }
     }
 
     fn takes_comma(&self) -> bool {
-        matches!(self.innermost(), Some(Bracket::Vector(_) | Bracket::Call(..)))
+        matches!(self.innermost(), Some(PovBracket::Vector(_) | PovBracket::Call(..)))
     }
 
     /// Applies what waits and binds at least as close as this; down to the innermost bracket or `?`.
     fn reduce(&mut self, precedence: u8) {
         loop {
             let binds = match self.waiting.last() {
-                Some(Waiting::Binary(operator)) => operator.precedence() >= precedence,
-                Some(Waiting::Negate | Waiting::Not) => true,
-                Some(Waiting::Colon) => precedence == 0,
-                Some(Waiting::Question | Waiting::Bracket(..)) | None => false,
+                Some(PovWaiting::Binary(operator)) => operator.precedence() >= precedence,
+                Some(PovWaiting::Negate | PovWaiting::Not) => true,
+                Some(PovWaiting::Colon) => precedence == 0,
+                Some(PovWaiting::Question | PovWaiting::Bracket(..)) | None => false,
             };
             if !binds {
                 return;
             }
             let mut pop = || self.operands.pop().unwrap_or(Amount::Number(0.0));
             let value = match self.waiting.pop() {
-                Some(Waiting::Binary(operator)) => {
+                Some(PovWaiting::Binary(operator)) => {
                     let b = pop();
                     operator.apply(pop(), b)
                 }
-                Some(Waiting::Negate) => pop().negated(),
-                Some(Waiting::Not) => pop().not(),
-                Some(Waiting::Colon) => {
+                Some(PovWaiting::Negate) => pop().negated(),
+                Some(PovWaiting::Not) => pop().not(),
+                Some(PovWaiting::Colon) => {
                     let (b, a, condition) = (pop(), pop(), pop());
                     match condition {
                         Amount::Number(0.0) => b,
@@ -367,7 +378,7 @@ impl Stacks {
                         Amount::Unknown(span) => Amount::Unknown(span),
                     }
                 }
-                Some(Waiting::Question | Waiting::Bracket(..)) | None => return,
+                Some(PovWaiting::Question | PovWaiting::Bracket(..)) | None => return,
             };
             self.operands.push(value);
         }

@@ -7,10 +7,10 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::Amount;
 use super::colors;
-use super::open::{ComponentFrame, Frame, GroupFrame, LookFrame, SHAPES};
-use super::scan::Token;
+use super::open::{ComponentFrame, GroupFrame, LookFrame, PovFrame, SHAPES};
+use super::scan::PovToken;
 use super::script::{Script, Value};
-use super::shape::{Blob, Shapes};
+use super::shape::{PovBlob, PovShapes};
 
 /// Groups, and whether they are more than a union.
 const GROUPS: [(&str, bool); 5] =
@@ -22,16 +22,16 @@ impl Script<'_> {
         loop {
             let (token, span) = self.scanner.next()?;
             match (token, self.frames.last().map(|(frame, _)| frame)) {
-                (Token::End, _) => return self.finished(),
-                (Token::Mark(b'#'), _) => self.directive()?,
+                (PovToken::End, _) => return self.finished(),
+                (PovToken::Mark(b'#'), _) => self.directive()?,
                 (_, None) => self.top(token, span)?,
-                (_, Some(Frame::Blob(_))) => self.in_blob(token, span)?,
-                (_, Some(Frame::Component(_))) => self.in_component(token, span)?,
-                (_, Some(Frame::Group(_))) => self.in_group(token, span)?,
-                (_, Some(Frame::Look(_))) => self.in_look(token, span)?,
-                (_, Some(Frame::Skip(_))) => self.in_skipped(token, span)?,
-                (_, Some(Frame::Transform(_))) => self.in_transform(token, span)?,
-                (_, Some(Frame::Declaration(_))) => {
+                (_, Some(PovFrame::Blob(_))) => self.in_blob(token, span)?,
+                (_, Some(PovFrame::Component(_))) => self.in_component(token, span)?,
+                (_, Some(PovFrame::Group(_))) => self.in_group(token, span)?,
+                (_, Some(PovFrame::Look(_))) => self.in_look(token, span)?,
+                (_, Some(PovFrame::Skip(_))) => self.in_skipped(token, span)?,
+                (_, Some(PovFrame::Transform(_))) => self.in_transform(token, span)?,
+                (_, Some(PovFrame::Declaration(_))) => {
                     return Err(self.scanner.unexpected(token, span).expected("expected a value"));
                 }
             }
@@ -53,23 +53,23 @@ impl Script<'_> {
     }
 
     /// A token that belongs to nothing.
-    pub(super) fn top(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn top(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b';' | b',') => Ok(()),
-            Token::Word => {
+            PovToken::Mark(b';' | b',') => Ok(()),
+            PovToken::Word => {
                 let word = self.scanner.word(span);
                 if self.begin_shapes(word, span)? {
                     return Ok(());
                 }
                 match self.scanner.peek()?.0 {
-                    Token::Mark(b'{') => {
+                    PovToken::Mark(b'{') => {
                         self.scanner.next()?;
                         if word != "global_settings" {
                             self.left_out.note(span, &format!("{word} is left out"));
                         }
-                        self.open(Frame::skip(word), span)
+                        self.open(PovFrame::skip(word), span)
                     }
-                    Token::Mark(b'(') => {
+                    PovToken::Mark(b'(') => {
                         self.left_out.note(span, &format!("the macro {word} is not run"));
                         self.skip_balanced(b'(', b')')
                     }
@@ -89,16 +89,16 @@ impl Script<'_> {
         }
         self.scanner.expect(b'{')?;
         let frame = match group {
-            Some(&(word, is_set_operation)) => Frame::Group(GroupFrame {
+            Some(&(word, is_set_operation)) => PovFrame::Group(GroupFrame {
                 word,
                 is_set_operation,
-                shapes: Shapes::default(),
+                shapes: PovShapes::default(),
                 count: 0,
                 map: DAffine3::IDENTITY,
                 color: None,
             }),
-            None if is_other => Frame::skip(word),
-            None => Frame::Blob(Blob {
+            None if is_other => PovFrame::skip(word),
+            None => PovFrame::Blob(PovBlob {
                 threshold: 1.0,
                 components: Vec::new(),
                 map: DAffine3::IDENTITY,
@@ -120,13 +120,13 @@ impl Script<'_> {
             return self.color().map(|amount| Some(Value::Amount(amount)));
         }
         let word_span = self.scanner.next()?.1;
-        let opens = self.scanner.peek()?.0 == Token::Mark(b'{');
+        let opens = self.scanner.peek()?.0 == PovToken::Mark(b'{');
         if let Some(value) = self.value(word).filter(|value| !matches!(value, Value::Amount(_))) {
             let value = value.clone();
             if let Value::Shapes(shapes) = &value {
                 self.spend(shapes.blobs.len(), span)?;
             }
-            if matches!(self.scanner.peek()?.0, Token::Mark(b'(')) {
+            if matches!(self.scanner.peek()?.0, PovToken::Mark(b'(')) {
                 self.skip_balanced(b'(', b')')?;
                 return Ok(Some(Value::Amount(Amount::Unknown(word_span))));
             }
@@ -136,17 +136,17 @@ impl Script<'_> {
             self.scanner.go(place);
             return self.expression().map(|amount| Some(Value::Amount(amount)));
         }
-        self.open(Frame::Declaration(name.to_owned()), span)?;
+        self.open(PovFrame::Declaration(name.to_owned()), span)?;
         if self.begin_shapes(word, word_span)? {
             return Ok(None);
         }
         match self.scanner.peek()?.0 {
-            Token::Mark(b'(') => self.skip_balanced(b'(', b')')?,
-            Token::Mark(b'[') => {
-                while self.scanner.peek()?.0 == Token::Mark(b'[') {
+            PovToken::Mark(b'(') => self.skip_balanced(b'(', b')')?,
+            PovToken::Mark(b'[') => {
+                while self.scanner.peek()?.0 == PovToken::Mark(b'[') {
                     self.skip_balanced(b'[', b']')?;
                 }
-                if self.scanner.peek()?.0 != Token::Mark(b'{') {
+                if self.scanner.peek()?.0 != PovToken::Mark(b'{') {
                     self.frames.pop();
                     return Ok(Some(Value::Other));
                 }
@@ -156,10 +156,10 @@ impl Script<'_> {
         self.scanner.expect(b'{')?;
         let frame = match word {
             "pigment" | "texture" | "material" => {
-                Frame::Look(LookFrame { depth: 1, color: None, is_default: false })
+                PovFrame::Look(LookFrame { depth: 1, color: None, is_default: false })
             }
-            "transform" => Frame::Transform(DAffine3::IDENTITY),
-            _ => Frame::skip(word),
+            "transform" => PovFrame::Transform(DAffine3::IDENTITY),
+            _ => PovFrame::skip(word),
         };
         self.open(frame, word_span)?;
         Ok(None)
@@ -168,25 +168,25 @@ impl Script<'_> {
     /// Hands what was closed to what is open around it.
     pub(super) fn deliver(&mut self, value: Value, span: Span) -> Result<(), Diagnostic> {
         match (self.frames.last_mut().map(|(frame, _)| frame), value) {
-            (Some(Frame::Declaration(_)), value) => {
-                if let Some((Frame::Declaration(name), _)) = self.frames.pop() {
+            (Some(PovFrame::Declaration(_)), value) => {
+                if let Some((PovFrame::Declaration(name), _)) = self.frames.pop() {
                     self.declare(&name, value);
                 }
                 self.scanner.accept(b';')?;
             }
-            (Some(Frame::Group(group)), Value::Shapes(shapes)) => {
+            (Some(PovFrame::Group(group)), Value::Shapes(shapes)) => {
                 group.count += 1;
                 group.shapes.add(Arc::unwrap_or_clone(shapes));
             }
-            (Some(Frame::Group(GroupFrame { color, .. })), Value::Look(look)) => *color = look.or(*color),
-            (Some(Frame::Blob(Blob { color, .. })), Value::Look(look)) => *color = look.or(*color),
-            (Some(Frame::Component(ComponentFrame { color, .. })), Value::Look(look)) => {
+            (Some(PovFrame::Group(GroupFrame { color, .. })), Value::Look(look)) => *color = look.or(*color),
+            (Some(PovFrame::Blob(PovBlob { color, .. })), Value::Look(look)) => *color = look.or(*color),
+            (Some(PovFrame::Component(ComponentFrame { color, .. })), Value::Look(look)) => {
                 *color = look.or(*color);
             }
-            (Some(Frame::Group(GroupFrame { map, .. })), Value::Transform(new))
-            | (Some(Frame::Blob(Blob { map, .. })), Value::Transform(new))
-            | (Some(Frame::Component(ComponentFrame { map, .. })), Value::Transform(new))
-            | (Some(Frame::Transform(map)), Value::Transform(new)) => *map = new * *map,
+            (Some(PovFrame::Group(GroupFrame { map, .. })), Value::Transform(new))
+            | (Some(PovFrame::Blob(PovBlob { map, .. })), Value::Transform(new))
+            | (Some(PovFrame::Component(ComponentFrame { map, .. })), Value::Transform(new))
+            | (Some(PovFrame::Transform(map)), Value::Transform(new)) => *map = new * *map,
             (None, Value::Shapes(shapes)) => {
                 for word in &shapes.others {
                     self.left_out.note(span, &format!("{word} is no blob and is left out"));

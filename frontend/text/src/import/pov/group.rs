@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::open::{Frame, GroupFrame, Modifier};
-use super::scan::Token;
+use super::open::{GroupFrame, Modifier, PovFrame};
+use super::scan::PovToken;
 use super::script::{Script, Value};
-use super::shape::Shapes;
+use super::shape::PovShapes;
 
 impl Script<'_> {
-    pub(super) fn in_group(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn in_group(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b'}') => return self.close_group(),
-            Token::Mark(b',' | b';') => return Ok(()),
-            Token::Word => {}
+            PovToken::Mark(b'}') => return self.close_group(),
+            PovToken::Mark(b',' | b';') => return Ok(()),
+            PovToken::Word => {}
             _ => return Err(self.scanner.unexpected(token, span).expected("expected a shape")),
         }
         let word = self.scanner.word(span);
@@ -23,7 +23,7 @@ impl Script<'_> {
         }
         match self.modifier(word, span)? {
             Modifier::Map(map) => {
-                if let Some((Frame::Group(group), _)) = self.frames.last_mut() {
+                if let Some((PovFrame::Group(group), _)) = self.frames.last_mut() {
                     group.map = map * group.map;
                 }
                 return Ok(());
@@ -37,27 +37,27 @@ impl Script<'_> {
             return self.deliver(Value::Shapes(shapes), span);
         }
         match self.scanner.peek()?.0 {
-            Token::Mark(b'{') => {
+            PovToken::Mark(b'{') => {
                 self.scanner.next()?;
-                self.open(Frame::skip(word), span)
+                self.open(PovFrame::skip(word), span)
             }
-            Token::Mark(b'(') => {
+            PovToken::Mark(b'(') => {
                 self.left_out.note(span, &format!("the macro {word} is not run"));
                 self.skip_balanced(b'(', b')')
             }
             _ => {
                 self.left_out.note(span, &format!("{word} is not known and is left out"));
-                self.deliver(Value::Shapes(Arc::new(Shapes::other(word))), span)
+                self.deliver(Value::Shapes(Arc::new(PovShapes::other(word))), span)
             }
         }
     }
 
     pub(super) fn close_group(&mut self) -> Result<(), Diagnostic> {
-        let Some((Frame::Group(group), span)) = self.frames.pop() else { return Ok(()) };
+        let Some((PovFrame::Group(group), span)) = self.frames.pop() else { return Ok(()) };
         let GroupFrame { word, is_set_operation, mut shapes, count, map, color } = group;
         self.spend(shapes.blobs.len(), span)?;
         if is_set_operation && shapes.blobs.is_empty() {
-            shapes = Shapes::other(word);
+            shapes = PovShapes::other(word);
         }
         let fault: Option<Arc<str>> = (is_set_operation && count > 1).then(|| {
             let others = if shapes.others.is_empty() { "blobs".to_owned() } else { shapes.others.join(", ") };

@@ -7,18 +7,18 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::colors;
 use super::modifier::BRACES;
-use super::open::{Frame, LookFrame, Modifier, SHAPES};
-use super::scan::Token;
+use super::open::{LookFrame, Modifier, PovFrame, SHAPES};
+use super::scan::PovToken;
 use super::script::{Script, Value};
-use super::shape::Shapes;
+use super::shape::PovShapes;
 
 impl Script<'_> {
-    pub(super) fn in_look(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn in_look(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b'{') => self.with_look(|look| look.depth += 1),
-            Token::Mark(b'}') => {
+            PovToken::Mark(b'{') => self.with_look(|look| look.depth += 1),
+            PovToken::Mark(b'}') => {
                 self.with_look(|look| look.depth -= 1);
-                let Some((Frame::Look(LookFrame { depth: 0, color, is_default }), _)) = self.frames.last()
+                let Some((PovFrame::Look(LookFrame { depth: 0, color, is_default }), _)) = self.frames.last()
                 else {
                     return Ok(());
                 };
@@ -30,14 +30,14 @@ impl Script<'_> {
                 }
                 return self.deliver(Value::Look(color), span);
             }
-            Token::Word => return self.word_of_look(span),
+            PovToken::Word => return self.word_of_look(span),
             _ => {}
         }
         Ok(())
     }
 
     pub(super) fn with_look(&mut self, change: impl FnOnce(&mut LookFrame)) {
-        if let Some((Frame::Look(look), _)) = self.frames.last_mut() {
+        if let Some((PovFrame::Look(look), _)) = self.frames.last_mut() {
             change(look);
         }
     }
@@ -67,40 +67,40 @@ impl Script<'_> {
         if matches!(word, "translate" | "rotate" | "scale") {
             return self.expression().map(|_| ());
         }
-        if self.scanner.peek()?.0 == Token::Mark(b'{') {
+        if self.scanner.peek()?.0 == PovToken::Mark(b'{') {
             if !BRACES.contains(&word) && word != "transform" {
                 self.left_out.note(span, &format!("{word} gives no colour that is read"));
             }
             self.scanner.next()?;
-            return self.open(Frame::skip(word), span);
+            return self.open(PovFrame::skip(word), span);
         }
         match self.named_color(word) {
             Some(color) => self.with_look(|look| look.color = color.or(look.color)),
             None => self.left_out.note(span, &format!("{word} gives no colour that is read")),
         }
-        if self.scanner.peek()?.0 == Token::Mark(b'(') {
+        if self.scanner.peek()?.0 == PovToken::Mark(b'(') {
             self.skip_balanced(b'(', b')')?;
         }
         Ok(())
     }
 
     /// What is left out calls for random numbers all the same.
-    pub(super) fn in_skipped(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
-        let Some((Frame::Skip(skip), _)) = self.frames.last_mut() else { return Ok(()) };
+    pub(super) fn in_skipped(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
+        let Some((PovFrame::Skip(skip), _)) = self.frames.last_mut() else { return Ok(()) };
         match token {
-            Token::Mark(b'{') => skip.depth += 1,
-            Token::Mark(b'}') => {
+            PovToken::Mark(b'{') => skip.depth += 1,
+            PovToken::Mark(b'}') => {
                 skip.depth -= 1;
                 if skip.depth == 0 {
                     let word = std::mem::take(&mut skip.word);
                     let begin = self.frames.pop().map_or(span, |(_, begin)| begin);
                     let is_shape = SHAPES.contains(&word.as_str());
-                    let shapes = || Value::Shapes(Arc::new(Shapes::other(&word)));
+                    let shapes = || Value::Shapes(Arc::new(PovShapes::other(&word)));
                     let value = if is_shape { shapes() } else { Value::Other };
                     return self.deliver(value, begin);
                 }
             }
-            Token::Word => match self.scanner.word(span) {
+            PovToken::Word => match self.scanner.word(span) {
                 "rand" => {
                     self.scanner.go(span.start as usize);
                     self.expression()?;
@@ -113,14 +113,14 @@ impl Script<'_> {
         Ok(())
     }
 
-    pub(super) fn in_transform(&mut self, token: Token, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn in_transform(&mut self, token: PovToken, span: Span) -> Result<(), Diagnostic> {
         match token {
-            Token::Mark(b'}') => {
-                let Some((Frame::Transform(map), begin)) = self.frames.pop() else { return Ok(()) };
+            PovToken::Mark(b'}') => {
+                let Some((PovFrame::Transform(map), begin)) = self.frames.pop() else { return Ok(()) };
                 return self.deliver(Value::Transform(map), begin);
             }
-            Token::Mark(b',') => return Ok(()),
-            Token::Word => {}
+            PovToken::Mark(b',') => return Ok(()),
+            PovToken::Word => {}
             _ => return Err(self.scanner.unexpected(token, span).expected("expected a transformation")),
         }
         let word = self.scanner.word(span);
@@ -133,7 +133,7 @@ impl Script<'_> {
                 _ => return Err(self.scanner.unexpected(token, span).expected("expected a transformation")),
             },
         };
-        if let Some((Frame::Transform(so_far), _)) = self.frames.last_mut() {
+        if let Some((PovFrame::Transform(so_far), _)) = self.frames.last_mut() {
             *so_far = map * *so_far;
         }
         Ok(())

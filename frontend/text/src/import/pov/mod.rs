@@ -51,7 +51,7 @@ use crate::Options;
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
     recognizes: scene::is_scene,
     has_objects: true,
-    ..SceneFormatRow::new(&["pov", "inc"], "a POV-Ray scene", |bytes, options| pov(bytes, options))
+    ..SceneFormatRow::new(&["pov", "inc"], "a POV-Ray scene", pov)
 };
 
 /// The model of the blobs of a POV-Ray scene (`.pov`): of all that it places, or of those of the declared

@@ -3,8 +3,8 @@
 use glam::DAffine3;
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-use super::open::{Frame, LookFrame, Modifier};
-use super::scan::Token;
+use super::open::{LookFrame, Modifier, PovFrame};
+use super::scan::PovToken;
 use super::script::{Script, Value};
 use super::transform;
 
@@ -45,8 +45,8 @@ impl Script<'_> {
             "transform" => {
                 let (token, at) = self.scanner.next()?;
                 match token {
-                    Token::Mark(b'{') => self.open(Frame::Transform(DAffine3::IDENTITY), span)?,
-                    Token::Word => match self.value(self.scanner.word(at)) {
+                    PovToken::Mark(b'{') => self.open(PovFrame::Transform(DAffine3::IDENTITY), span)?,
+                    PovToken::Word => match self.value(self.scanner.word(at)) {
                         Some(&Value::Transform(map)) => return Ok(Modifier::Map(map)),
                         _ => return Err(self.unknown(at)),
                     },
@@ -57,7 +57,7 @@ impl Script<'_> {
             "pigment" | "texture" | "material" => {
                 self.scanner.expect(b'{')?;
                 let frame = LookFrame { depth: 1, color: None, is_default: false };
-                self.open(Frame::Look(frame), span)?;
+                self.open(PovFrame::Look(frame), span)?;
                 Ok(Modifier::Done)
             }
             "inverse" => {
@@ -82,7 +82,7 @@ impl Script<'_> {
 
     pub(super) fn begin_skipped(&mut self, word: &str, span: Span) -> Result<Modifier, Diagnostic> {
         self.scanner.expect(b'{')?;
-        self.open(Frame::skip(word), span)?;
+        self.open(PovFrame::skip(word), span)?;
         Ok(Modifier::Done)
     }
 

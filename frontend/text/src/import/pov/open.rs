@@ -4,10 +4,10 @@ use glam::DAffine3;
 use jbt_model::diagnostic::Span;
 
 use super::amount::Amount;
-use super::shape::{Blob, Color, Shapes};
+use super::shape::{Color, PovBlob, PovShapes};
 
 /// A directive that ends with `#end`.
-pub(super) enum Block {
+pub(super) enum PovBlock {
     /// A branch that is taken.
     If,
     /// A case that is taken.
@@ -29,10 +29,10 @@ pub(super) enum Block {
 }
 
 /// Something that is open.
-pub(super) enum Frame {
+pub(super) enum PovFrame {
     /// A declaration that waits for its value.
     Declaration(String),
-    Blob(Blob),
+    Blob(PovBlob),
     Component(ComponentFrame),
     Group(GroupFrame),
     Look(LookFrame),
@@ -53,7 +53,7 @@ pub(super) struct GroupFrame {
     pub(super) word: &'static str,
     /// Whether it is more than the union of its shapes.
     pub(super) is_set_operation: bool,
-    pub(super) shapes: Shapes,
+    pub(super) shapes: PovShapes,
     pub(super) count: usize,
     pub(super) map: DAffine3,
     pub(super) color: Option<Color>,
@@ -115,7 +115,7 @@ pub(super) const SHAPES: [&str; 29] = [
     "triangle",
 ];
 
-impl Frame {
+impl PovFrame {
     /// The look of what has none.
     pub(super) fn default_look() -> Self {
         Self::Look(LookFrame { depth: 1, color: None, is_default: true })

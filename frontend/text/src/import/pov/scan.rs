@@ -5,7 +5,7 @@ use jbt_model::report::clip;
 
 /// A part of the text.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Token {
+pub(super) enum PovToken {
     /// A name or a word of the language.
     Word,
     /// A number, which may be infinite: the user of it says what is wrong.
@@ -25,14 +25,14 @@ pub(super) enum Token {
 }
 
 /// The text, and a place in it.
-pub(super) struct Scanner<'a> {
+pub(super) struct PovScanner<'a> {
     bytes: &'a [u8],
     at: usize,
     /// The token at the place, and the place behind it, if it was looked at.
-    ahead: Option<(Token, Span, usize)>,
+    ahead: Option<(PovToken, Span, usize)>,
 }
 
-impl<'a> Scanner<'a> {
+impl<'a> PovScanner<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, ahead: None }
     }
@@ -64,16 +64,16 @@ impl<'a> Scanner<'a> {
     }
 
     /// The next token, which stays there.
-    pub(super) fn peek(&mut self) -> Result<(Token, Span), Diagnostic> {
+    pub(super) fn peek(&mut self) -> Result<(PovToken, Span), Diagnostic> {
         if self.ahead.is_none() {
             let (token, span) = self.scan()?;
-            self.ahead = Some((token, span, span.end as usize + usize::from(token == Token::Text)));
+            self.ahead = Some((token, span, span.end as usize + usize::from(token == PovToken::Text)));
         }
-        Ok(self.ahead.map_or((Token::End, Span::new(self.at, self.at)), |(token, span, _)| (token, span)))
+        Ok(self.ahead.map_or((PovToken::End, Span::new(self.at, self.at)), |(token, span, _)| (token, span)))
     }
 
     /// The next token.
-    pub(super) fn next(&mut self) -> Result<(Token, Span), Diagnostic> {
+    pub(super) fn next(&mut self) -> Result<(PovToken, Span), Diagnostic> {
         let (token, span) = self.peek()?;
         if let Some((_, _, behind)) = self.ahead.take() {
             self.at = behind;
@@ -83,7 +83,7 @@ impl<'a> Scanner<'a> {
 
     /// Takes a mark, if it is the next token.
     pub(super) fn accept(&mut self, mark: u8) -> Result<bool, Diagnostic> {
-        let found = self.peek()?.0 == Token::Mark(mark);
+        let found = self.peek()?.0 == PovToken::Mark(mark);
         if found {
             self.next()?;
         }
@@ -93,7 +93,7 @@ impl<'a> Scanner<'a> {
     /// Takes a mark that has to be there.
     pub(super) fn expect(&mut self, mark: u8) -> Result<Span, Diagnostic> {
         let (token, span) = self.next()?;
-        if token == Token::Mark(mark) {
+        if token == PovToken::Mark(mark) {
             return Ok(span);
         }
         Err(self.unexpected(token, span).expected(format!("expected `{}`", char::from(mark))))
@@ -102,7 +102,7 @@ impl<'a> Scanner<'a> {
     /// Takes a word that has to be there.
     pub(super) fn expect_word(&mut self, what: &str) -> Result<(&'a str, Span), Diagnostic> {
         let (token, span) = self.next()?;
-        if token == Token::Word {
+        if token == PovToken::Word {
             return Ok((self.word(span), span));
         }
         Err(self.unexpected(token, span).expected(format!("expected {what}")))
@@ -111,14 +111,14 @@ impl<'a> Scanner<'a> {
     /// The next token, if it is a word.
     pub(super) fn peek_word(&mut self) -> Result<Option<&'a str>, Diagnostic> {
         let (token, span) = self.peek()?;
-        Ok((token == Token::Word).then(|| self.word(span)))
+        Ok((token == PovToken::Word).then(|| self.word(span)))
     }
 
     /// The error about a token.
-    pub(super) fn unexpected(&self, token: Token, span: Span) -> Diagnostic {
+    pub(super) fn unexpected(&self, token: PovToken, span: Span) -> Diagnostic {
         let message = match token {
-            Token::End => "the file ends here".to_owned(),
-            Token::Mark(b'#') => "a directive within something that has to be complete".to_owned(),
+            PovToken::End => "the file ends here".to_owned(),
+            PovToken::Mark(b'#') => "a directive within something that has to be complete".to_owned(),
             _ => format!("unexpected `{}`", self.shown(span)),
         };
         Diagnostic::error(Some(span), message)
@@ -128,26 +128,26 @@ impl<'a> Scanner<'a> {
         self.bytes.get(self.at + ahead).copied().unwrap_or(0)
     }
 
-    fn scan(&mut self) -> Result<(Token, Span), Diagnostic> {
+    fn scan(&mut self) -> Result<(PovToken, Span), Diagnostic> {
         self.skip_blanks()?;
         let start = self.at;
         let Some(&first) = self.bytes.get(start) else {
-            return Ok((Token::End, Span::new(start, start)));
+            return Ok((PovToken::End, Span::new(start, start)));
         };
         let rest = &self.bytes[start..];
         let length = |stays: fn(u8) -> bool| rest.iter().position(|&b| !stays(b)).unwrap_or(rest.len());
         let of = |token, length| Ok((token, Span::new(start, start + length)));
         match first {
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
-                of(Token::Word, length(|byte| byte.is_ascii_alphanumeric() || byte == b'_'))
+                of(PovToken::Word, length(|byte| byte.is_ascii_alphanumeric() || byte == b'_'))
             }
             b'0'..=b'9' => self.number(start),
             b'.' if self.byte(1).is_ascii_digit() => self.number(start),
             b'"' => self.string(start),
-            b'<' if self.byte(1) == b'=' => of(Token::AtMost, 2),
-            b'>' if self.byte(1) == b'=' => of(Token::AtLeast, 2),
-            b'!' if self.byte(1) == b'=' => of(Token::Unequal, 2),
-            0x21..=0x7e => of(Token::Mark(first), 1),
+            b'<' if self.byte(1) == b'=' => of(PovToken::AtMost, 2),
+            b'>' if self.byte(1) == b'=' => of(PovToken::AtLeast, 2),
+            b'!' if self.byte(1) == b'=' => of(PovToken::Unequal, 2),
+            0x21..=0x7e => of(PovToken::Mark(first), 1),
             _ => {
                 let message = "this is no text of a scene";
                 Err(Diagnostic::error(Some(Span::new(start, start + 1)), message))
@@ -155,7 +155,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    fn number(&self, start: usize) -> Result<(Token, Span), Diagnostic> {
+    fn number(&self, start: usize) -> Result<(PovToken, Span), Diagnostic> {
         let digits = |mut at: usize| {
             while self.bytes.get(at).is_some_and(u8::is_ascii_digit) {
                 at += 1;
@@ -177,14 +177,14 @@ impl<'a> Scanner<'a> {
             .word(span)
             .parse()
             .map_err(|_| Diagnostic::error(Some(span), format!("`{}` is no number", self.shown(span))))?;
-        Ok((Token::Number(number), span))
+        Ok((PovToken::Number(number), span))
     }
 
-    fn string(&self, start: usize) -> Result<(Token, Span), Diagnostic> {
+    fn string(&self, start: usize) -> Result<(PovToken, Span), Diagnostic> {
         let mut at = start + 1;
         loop {
             match self.bytes.get(at) {
-                Some(b'"') => return Ok((Token::Text, Span::new(start + 1, at))),
+                Some(b'"') => return Ok((PovToken::Text, Span::new(start + 1, at))),
                 Some(b'\\') => at += 2,
                 Some(_) => at += 1,
                 None => {

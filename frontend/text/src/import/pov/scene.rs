@@ -11,7 +11,7 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
 
 use super::script::{Script, Value};
-use super::shape::{Blob, Color, Component, PlacedBlob};
+use super::shape::{Color, Component, PlacedBlob, PovBlob};
 
 /// Words that begin the text of a scene, as a rule.
 const BEGINNINGS: [&str; 8] =
@@ -120,7 +120,7 @@ fn chosen(script: &mut Script<'_>, name: &str) -> Result<Vec<PlacedBlob>, Diagno
 
 /// The tree of a blob whose strengths are divided by a number.
 fn tree(placed: &PlacedBlob, divisor: f64) -> Tree {
-    let Blob { components, map, color, span, .. } = &*placed.blob;
+    let PovBlob { components, map, color, span, .. } = &*placed.blob;
     let mut leaves: Vec<Tree> = components.iter().map(|component| leaf(component, divisor)).collect();
     let sum =
         if leaves.len() == 1 { leaves.remove(0) } else { Tree::at(*span, Combinator::from(Sum {}), leaves) };

@@ -8,16 +8,16 @@ use jbt_ir::limits::{MAX_BLOCK_DEPTH, MAX_SCRIPT_STEPS};
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::{Amount, Streams, vector};
-use super::open::{Block, Frame};
-use super::scan::Scanner;
-use super::shape::Shapes;
-use crate::import::tally::Tally;
+use super::open::{PovBlock, PovFrame};
+use super::scan::PovScanner;
+use super::shape::PovShapes;
+use crate::import::tally::LeftOut;
 
 /// What a name stands for.
 #[derive(Clone)]
 pub(super) enum Value {
     Amount(Amount),
-    Shapes(Arc<Shapes>),
+    Shapes(Arc<PovShapes>),
     /// A pigment, a texture or a material: its colour, if it has one.
     Look(Option<[f64; 3]>),
     Transform(DAffine3),
@@ -27,7 +27,7 @@ pub(super) enum Value {
 
 /// A scene that is being run.
 pub(super) struct Script<'a> {
-    pub(super) scanner: Scanner<'a>,
+    pub(super) scanner: PovScanner<'a>,
     names: HashMap<String, Value>,
     /// Declared shapes, in the order of their first declarations.
     pub(super) declared: Vec<String>,
@@ -36,11 +36,11 @@ pub(super) struct Script<'a> {
     left: usize,
     /// How often names and streams of numbers have been asked: a condition that asks none never changes.
     pub(super) asked: usize,
-    pub(super) blocks: Vec<(Block, Span)>,
-    pub(super) frames: Vec<(Frame, Span)>,
+    pub(super) blocks: Vec<(PovBlock, Span)>,
+    pub(super) frames: Vec<(PovFrame, Span)>,
     /// What the file places.
-    pub(super) scene: Shapes,
-    pub(super) left_out: Tally,
+    pub(super) scene: PovShapes,
+    pub(super) left_out: LeftOut,
     /// Files that were named and are not read.
     pub(super) missing: Vec<String>,
     /// What display values are raised to, to be linear.
@@ -52,7 +52,7 @@ pub(super) struct Script<'a> {
 impl<'a> Script<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self {
-            scanner: Scanner::new(bytes),
+            scanner: PovScanner::new(bytes),
             names: HashMap::new(),
             declared: Vec::new(),
             streams: Streams::default(),
@@ -61,8 +61,8 @@ impl<'a> Script<'a> {
             asked: 0,
             blocks: Vec::new(),
             frames: Vec::new(),
-            scene: Shapes::default(),
-            left_out: Tally::default(),
+            scene: PovShapes::default(),
+            left_out: LeftOut::default(),
             missing: Vec::new(),
             gamma: 1.0,
             default_color: None,
@@ -100,7 +100,7 @@ impl<'a> Script<'a> {
     }
 
     /// Opens something that ends with a brace.
-    pub(super) fn open(&mut self, frame: Frame, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn open(&mut self, frame: PovFrame, span: Span) -> Result<(), Diagnostic> {
         if self.frames.len() == MAX_BLOCK_DEPTH {
             let message = format!("more than {MAX_BLOCK_DEPTH} blocks within each other");
             return Err(Diagnostic::limit(Some(span), message));

@@ -23,7 +23,7 @@ pub(super) struct Component {
 
 /// A blob in its own space.
 #[derive(Clone)]
-pub(super) struct Blob {
+pub(super) struct PovBlob {
     pub(super) threshold: f64,
     pub(super) components: Vec<Component>,
     /// Its own transformations.
@@ -35,7 +35,7 @@ pub(super) struct Blob {
 /// A blob at a place.
 #[derive(Clone)]
 pub(super) struct PlacedBlob {
-    pub(super) blob: Arc<Blob>,
+    pub(super) blob: Arc<PovBlob>,
     /// From where the blob's own transformations lead, to the world.
     pub(super) map: DAffine3,
     /// What the shapes around it give, if it has no colour of its own.
@@ -46,7 +46,7 @@ pub(super) struct PlacedBlob {
 
 /// What a name, a group or a scene holds.
 #[derive(Clone, Default)]
-pub(super) struct Shapes {
+pub(super) struct PovShapes {
     pub(super) blobs: Vec<PlacedBlob>,
     /// Words for the shapes that are no blobs, each once, and the first ones alone.
     pub(super) others: Vec<String>,
@@ -55,7 +55,7 @@ pub(super) struct Shapes {
 /// How many words for other shapes are kept.
 const MOST_OTHERS: usize = 8;
 
-impl Shapes {
+impl PovShapes {
     /// A shape that is no blob.
     pub(super) fn other(word: &str) -> Self {
         Self { blobs: Vec::new(), others: vec![word.to_owned()] }

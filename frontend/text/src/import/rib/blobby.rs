@@ -35,14 +35,14 @@ pub(super) enum LeafColors {
 
 /// A field, or a number that is the same everywhere.
 #[derive(Clone)]
-struct Part {
+struct BlobbyPart {
     /// `None` for a number.
     tree: Option<Tree>,
     /// What it is far from all leaves.
     far: f64,
 }
 
-impl Part {
+impl BlobbyPart {
     fn number(far: f64) -> Self {
         Self { tree: None, far }
     }
@@ -57,7 +57,7 @@ impl Part {
 }
 
 /// The field of a `Blobby`.
-pub(super) struct Field {
+pub(super) struct BlobbyField {
     pub(super) tree: Tree,
     /// What it is far from all leaves.
     pub(super) far: f64,
@@ -66,7 +66,7 @@ pub(super) struct Field {
 }
 
 /// The codes of a `Blobby` and the numbers that they name.
-pub(super) struct Program<'a> {
+pub(super) struct BlobbyProgram<'a> {
     pub(super) codes: &'a [f64],
     pub(super) floats: &'a [f64],
     /// The strings, for messages.
@@ -78,15 +78,15 @@ pub(super) struct Program<'a> {
 }
 
 /// An instruction: its code and its operands.
-type Instruction<'a> = (u32, &'a [f64]);
+type BlobbyInstruction<'a> = (u32, &'a [f64]);
 
-impl Program<'_> {
+impl BlobbyProgram<'_> {
     fn error<T>(&self, message: impl Into<String>) -> Result<T, Diagnostic> {
         Err(Diagnostic::error(Some(self.span), message))
     }
 
     /// The instructions, in order.
-    pub(super) fn instructions(&self) -> Result<Vec<Instruction<'_>>, Diagnostic> {
+    pub(super) fn instructions(&self) -> Result<Vec<BlobbyInstruction<'_>>, Diagnostic> {
         let (mut all, mut rest) = (Vec::new(), self.codes);
         while let Some((&code, after)) = rest.split_first() {
             let number = all.len();
@@ -117,14 +117,14 @@ impl Program<'_> {
     /// The field of the last instruction.
     pub(super) fn field(
         &self,
-        instructions: &[Instruction<'_>],
+        instructions: &[BlobbyInstruction<'_>],
         colors: &LeafColors,
-    ) -> Result<Field, Diagnostic> {
-        let mut results: Vec<Part> = Vec::with_capacity(instructions.len());
+    ) -> Result<BlobbyField, Diagnostic> {
+        let mut results: Vec<BlobbyPart> = Vec::with_capacity(instructions.len());
         let (mut bounds, mut leaves) = (Bounds::EMPTY, 0);
         for (number, &(code, operands)) in instructions.iter().enumerate() {
             let part = match code {
-                1000 => Part::number(self.floats(number, operands[0], 1)?[0]),
+                1000 => BlobbyPart::number(self.floats(number, operands[0], 1)?[0]),
                 1001 => {
                     let map = self.matrix(number, self.floats(number, operands[0], 16)?)?;
                     bounds = bounds.hull(map_bounds(&map, Bounds::new(DVec3::NEG_ONE, DVec3::ONE)));
@@ -144,15 +144,15 @@ impl Program<'_> {
             results.push(part);
         }
         let last = &results[results.len() - 1];
-        Ok(Field { tree: last.tree(), far: last.far, bounds })
+        Ok(BlobbyField { tree: last.tree(), far: last.far, bounds })
     }
 
-    fn leaf(&self, tree: Tree, number: usize, colors: &LeafColors) -> Part {
+    fn leaf(&self, tree: Tree, number: usize, colors: &LeafColors) -> BlobbyPart {
         let tree = match colors {
             LeafColors::Common => tree,
             LeafColors::Each(all) => all.get(number).map_or(tree.clone(), |color| tree.color(*color)),
         };
-        Part { tree: Some(tree), far: 0.0 }
+        BlobbyPart { tree: Some(tree), far: 0.0 }
     }
 
     /// The error about a leaf that asks for more than the file has.
@@ -181,7 +181,12 @@ impl Program<'_> {
     }
 
     /// The result of an earlier instruction.
-    fn earlier<'p>(&self, number: usize, operand: f64, results: &'p [Part]) -> Result<&'p Part, Diagnostic> {
+    fn earlier<'p>(
+        &self,
+        number: usize,
+        operand: f64,
+        results: &'p [BlobbyPart],
+    ) -> Result<&'p BlobbyPart, Diagnostic> {
         let found = index(operand).and_then(|operand| results.get(operand));
         found.ok_or_else(|| {
             let message = format!("instruction {number} asks for the result of instruction {operand}");
@@ -195,19 +200,19 @@ impl Program<'_> {
         number: usize,
         code: u32,
         operands: &[f64],
-        results: &[Part],
-    ) -> Result<Part, Diagnostic> {
+        results: &[BlobbyPart],
+    ) -> Result<BlobbyPart, Diagnostic> {
         if operands.is_empty() {
             return self.error(format!("instruction {number} has no operands"));
         }
         let parts = operands.iter().map(|&operand| self.earlier(number, operand, results));
-        let parts: Vec<&Part> = parts.collect::<Result<_, _>>()?;
+        let parts: Vec<&BlobbyPart> = parts.collect::<Result<_, _>>()?;
         let numbers = parts.iter().filter(|part| part.tree.is_none()).map(|part| part.far);
         let of_numbers = numbers.reduce(|a, b| combined(code, a, b));
         let fields: Vec<Tree> = parts.iter().filter_map(|part| part.tree.clone()).collect();
         let far = parts.iter().map(|part| part.far).reduce(|a, b| combined(code, a, b)).unwrap_or(0.0);
         if fields.is_empty() {
-            return Ok(Part::number(far));
+            return Ok(BlobbyPart::number(far));
         }
         let over = |operator: Combinator, mut fields: Vec<Tree>| {
             if fields.len() == 1 { fields.remove(0) } else { Tree::at(self.span, operator, fields) }
@@ -233,11 +238,17 @@ impl Program<'_> {
             2 => over(Union {}.into(), with_number(fields)),
             _ => over(Intersection {}.into(), with_number(fields)),
         };
-        Ok(Part { tree: Some(tree), far })
+        Ok(BlobbyPart { tree: Some(tree), far })
     }
 
     /// A difference, quotient, opposite or the same.
-    fn few(&self, number: usize, code: u32, operands: &[f64], results: &[Part]) -> Result<Part, Diagnostic> {
+    fn few(
+        &self,
+        number: usize,
+        code: u32,
+        operands: &[f64],
+        results: &[BlobbyPart],
+    ) -> Result<BlobbyPart, Diagnostic> {
         let a = self.earlier(number, operands[0], results)?;
         let b = operands.get(1).map_or(Ok(a), |&operand| self.earlier(number, operand, results))?;
         let far = match code {
@@ -248,7 +259,7 @@ impl Program<'_> {
             _ => a.far,
         };
         if a.tree.is_none() && b.tree.is_none() {
-            return Ok(Part::number(far));
+            return Ok(BlobbyPart::number(far));
         }
         let tree = match code {
             4 => Tree::expression(a.term() - b.term()),
@@ -256,7 +267,7 @@ impl Program<'_> {
             6 => Tree::expression(-a.term()),
             _ => a.tree(),
         };
-        Ok(Part { tree: Some(tree), far })
+        Ok(BlobbyPart { tree: Some(tree), far })
     }
 
     /// The line, its radius and its map.

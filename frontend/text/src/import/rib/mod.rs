@@ -11,9 +11,10 @@
 //! WorldEnd
 //! ```
 //!
-//! A request is a bare word with the arguments up to the next one. Requests of the look of things are skipped,
-//! shapes of other kinds are left out with a warning. Coordinates are those of the world: a `WorldBegin` ends
-//! what is said of the camera. Matrices are for row vectors, and the last request acts first.
+//! A request is a bare word with the arguments up to the next one. Requests of the look of things are
+//! skipped, shapes of other kinds are left out with a warning. Coordinates are those of the world: a
+//! `WorldBegin` ends what is said of the camera. Matrices are for row vectors, and the last request acts
+//! first.
 //!
 //! All `Blobby` of a file are one model, their union, with the iso-value 27/64.
 
@@ -32,12 +33,12 @@ use jbt_model::orientation::Orientation;
 use jbt_model::report::{Report, clip, nearest};
 use jbt_model::tree::Tree;
 
-use self::blobby::{ISO, LeafColors, Program, affine, placed};
-use self::request::{Block, Request};
-use self::scan::{Argument, Scanner, Values};
+use self::blobby::{BlobbyProgram, ISO, LeafColors, affine, placed};
+use self::request::{Request, RibBlock};
+use self::scan::{Argument, ArgumentValues, RibScanner};
 use super::Imported;
 use super::format::{SceneFormatRow, first_line};
-use super::tally::Tally;
+use super::tally::LeftOut;
 
 /// A comment that names RenderMan, or a request, comes first.
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
@@ -70,7 +71,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
         let help = "`gunzip`, or `catrib -ascii` of a renderer, makes a text of it";
         return Err(vec![Diagnostic::error(Some(Span::new(0, 1)), message).expected(help)]);
     }
-    let mut reader = Reader::new(bytes);
+    let mut reader = RibReader::new(bytes);
     if let Err(error) = reader.requests() {
         reader.errors.add_last(error);
     }
@@ -86,10 +87,10 @@ struct Graphics {
     color: Option<[f64; 3]>,
 }
 
-struct Reader<'a> {
-    scanner: Scanner<'a>,
+struct RibReader<'a> {
+    scanner: RibScanner<'a>,
     now: Graphics,
-    blocks: Vec<(Block, Span, Graphics)>,
+    blocks: Vec<(RibBlock, Span, Graphics)>,
     /// Class and type of declared parameters, by name.
     declared: HashMap<String, String>,
     /// The shapes that are kept under a handle.
@@ -100,14 +101,14 @@ struct Reader<'a> {
     motion: Option<bool>,
     trees: Vec<Tree>,
     errors: Report,
-    left_out: Tally,
+    left_out: LeftOut,
     warnings: Vec<Diagnostic>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> RibReader<'a> {
     fn new(bytes: &'a [u8]) -> Self {
         Self {
-            scanner: Scanner::new(bytes),
+            scanner: RibScanner::new(bytes),
             now: Graphics { space: Ok(DAffine3::IDENTITY), color: Some([1.0; 3]) },
             blocks: Vec::new(),
             declared: HashMap::new(),
@@ -116,7 +117,7 @@ impl<'a> Reader<'a> {
             motion: None,
             trees: Vec::new(),
             errors: Report::default(),
-            left_out: Tally::default(),
+            left_out: LeftOut::default(),
             warnings: Vec::new(),
         }
     }
@@ -181,7 +182,7 @@ impl<'a> Reader<'a> {
         let numbers = |count| numbers(span, arguments, count);
         match request {
             Request::WorldBegin => {
-                self.begin(Block::World, span)?;
+                self.begin(RibBlock::World, span)?;
                 self.now.space = Ok(DAffine3::IDENTITY);
             }
             Request::Begin(block) => self.begin(block, span)?,
@@ -208,13 +209,13 @@ impl<'a> Reader<'a> {
                 if self.open.is_some() {
                     return Err(Diagnostic::error(Some(span), "an object begins within an object"));
                 }
-                self.begin(Block::Object, span)?;
+                self.begin(RibBlock::Object, span)?;
                 self.now = Graphics { space: Ok(DAffine3::IDENTITY), color: None };
                 self.objects.insert(handle.clone(), Vec::new());
                 self.open = Some(handle);
             }
             Request::ObjectEnd => {
-                self.end(Block::Object, span)?;
+                self.end(RibBlock::Object, span)?;
                 self.open = None;
             }
             Request::ObjectInstance => self.instance(span, arguments)?,
@@ -228,7 +229,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn begin(&mut self, block: Block, span: Span) -> Result<(), Diagnostic> {
+    fn begin(&mut self, block: RibBlock, span: Span) -> Result<(), Diagnostic> {
         if self.blocks.len() == MAX_BLOCK_DEPTH {
             let message = format!("more than {MAX_BLOCK_DEPTH} blocks within each other");
             return Err(Diagnostic::limit(Some(span), message));
@@ -237,11 +238,11 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn end(&mut self, block: Block, span: Span) -> Result<(), Diagnostic> {
+    fn end(&mut self, block: RibBlock, span: Span) -> Result<(), Diagnostic> {
         let name = block.name();
         match self.blocks.pop() {
             Some((begun, _, before)) if begun == block => {
-                let color = if block == Block::Transform { self.now.color } else { before.color };
+                let color = if block == RibBlock::Transform { self.now.color } else { before.color };
                 self.now = Graphics { color, ..before };
                 Ok(())
             }
@@ -271,16 +272,16 @@ impl<'a> Reader<'a> {
 
     fn lone_text(&self, argument: &Argument) -> Option<String> {
         match &argument.values {
-            Values::Texts(texts) => texts.first().map(|&text| self.scanner.text(text)),
-            Values::Numbers(_) => None,
+            ArgumentValues::Texts(texts) => texts.first().map(|&text| self.scanner.text(text)),
+            ArgumentValues::Numbers(_) => None,
         }
     }
 
     /// The handle of an object: a number or a string.
     fn handle(&self, span: Span, arguments: &[Argument]) -> Result<String, Diagnostic> {
         let handle = arguments.first().and_then(|argument| match &argument.values {
-            Values::Numbers(numbers) => numbers.first().map(f64::to_string),
-            Values::Texts(_) => self.lone_text(argument),
+            ArgumentValues::Numbers(numbers) => numbers.first().map(f64::to_string),
+            ArgumentValues::Texts(_) => self.lone_text(argument),
         });
         handle.ok_or_else(|| Diagnostic::error(Some(span), "the object has no handle"))
     }
@@ -316,14 +317,17 @@ impl<'a> Reader<'a> {
         let [count, codes, floats, rest @ ..] = arguments else {
             return Err(usage(span));
         };
-        let (Values::Numbers(count), Values::Numbers(code_numbers), Values::Numbers(float_numbers)) =
-            (&count.values, &codes.values, &floats.values)
+        let (
+            ArgumentValues::Numbers(count),
+            ArgumentValues::Numbers(code_numbers),
+            ArgumentValues::Numbers(float_numbers),
+        ) = (&count.values, &codes.values, &floats.values)
         else {
             return Err(usage(span));
         };
         let (texts, parameters) = strings(rest);
         let texts: Vec<String> = texts.iter().map(|&text| self.scanner.text(text)).collect();
-        let program = Program {
+        let program = BlobbyProgram {
             codes: code_numbers,
             floats: float_numbers,
             texts: &texts,
@@ -351,7 +355,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A field that is 0 beyond the supports of its leaves, where it can be.
-    fn bounded(&mut self, span: Span, field: blobby::Field) -> Tree {
+    fn bounded(&mut self, span: Span, field: blobby::BlobbyField) -> Tree {
         if field.far == 0.0 {
             return field.tree;
         }
@@ -386,7 +390,7 @@ impl<'a> Reader<'a> {
                 self.left_out.note(pair[0].span, &message);
                 continue;
             }
-            let Some(Argument { values: Values::Numbers(numbers), span, .. }) = pair.get(1) else {
+            let Some(Argument { values: ArgumentValues::Numbers(numbers), span, .. }) = pair.get(1) else {
                 return Err(Diagnostic::error(Some(pair[0].span), "the colour Cs has no numbers"));
             };
             let is_one = class.starts_with("constant") || class.starts_with("uniform");
@@ -434,15 +438,16 @@ impl<'a> Reader<'a> {
 /// The strings of a `Blobby`, if it has them, and its parameters: a lone string before another one is an
 /// array of one.
 fn strings(rest: &[Argument]) -> (&[Span], &[Argument]) {
-    let is_name =
-        |argument: Option<&Argument>| argument.is_none_or(|one| matches!(one.values, Values::Texts(_)));
+    let is_name = |argument: Option<&Argument>| {
+        argument.is_none_or(|one| matches!(one.values, ArgumentValues::Texts(_)))
+    };
     match rest {
-        [Argument { values: Values::Texts(texts), is_lone, .. }, rest @ ..]
+        [Argument { values: ArgumentValues::Texts(texts), is_lone, .. }, rest @ ..]
             if !is_lone || is_name(rest.first()) =>
         {
             (texts, rest)
         }
-        [Argument { values: Values::Numbers(numbers), is_lone: false, .. }, rest @ ..]
+        [Argument { values: ArgumentValues::Numbers(numbers), is_lone: false, .. }, rest @ ..]
             if numbers.is_empty() =>
         {
             (&[], rest)
@@ -461,8 +466,8 @@ fn numbers(span: Span, arguments: &[Argument], count: usize) -> Result<Vec<f64>,
     let mut all = Vec::with_capacity(count);
     for argument in arguments {
         match &argument.values {
-            Values::Numbers(numbers) => all.extend(numbers),
-            Values::Texts(_) => {
+            ArgumentValues::Numbers(numbers) => all.extend(numbers),
+            ArgumentValues::Texts(_) => {
                 return Err(Diagnostic::error(Some(argument.span), "a string").expected("expected a number"));
             }
         }

@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Request {
     WorldBegin,
-    Begin(Block),
-    End(Block),
+    Begin(RibBlock),
+    End(RibBlock),
     Translate,
     Scale,
     Rotate,
@@ -32,7 +32,7 @@ pub(super) enum Request {
 
 /// What keeps a state, to bring it back at its end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Block {
+pub(super) enum RibBlock {
     Transform,
     Attribute,
     Frame,
@@ -40,7 +40,7 @@ pub(super) enum Block {
     Object,
 }
 
-impl Block {
+impl RibBlock {
     /// As its requests begin.
     pub(super) const fn name(self) -> &'static str {
         match self {
@@ -55,13 +55,13 @@ impl Block {
 
 const REQUESTS: &[(&str, Request)] = &[
     ("WorldBegin", Request::WorldBegin),
-    ("WorldEnd", Request::End(Block::World)),
-    ("TransformBegin", Request::Begin(Block::Transform)),
-    ("TransformEnd", Request::End(Block::Transform)),
-    ("AttributeBegin", Request::Begin(Block::Attribute)),
-    ("AttributeEnd", Request::End(Block::Attribute)),
-    ("FrameBegin", Request::Begin(Block::Frame)),
-    ("FrameEnd", Request::End(Block::Frame)),
+    ("WorldEnd", Request::End(RibBlock::World)),
+    ("TransformBegin", Request::Begin(RibBlock::Transform)),
+    ("TransformEnd", Request::End(RibBlock::Transform)),
+    ("AttributeBegin", Request::Begin(RibBlock::Attribute)),
+    ("AttributeEnd", Request::End(RibBlock::Attribute)),
+    ("FrameBegin", Request::Begin(RibBlock::Frame)),
+    ("FrameEnd", Request::End(RibBlock::Frame)),
     ("Translate", Request::Translate),
     ("Scale", Request::Scale),
     ("Rotate", Request::Rotate),

@@ -9,7 +9,7 @@ const ARGUMENT: usize = 8;
 
 /// A part of the file.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Token {
+pub(super) enum RibToken {
     /// A bare word: a request.
     Word,
     /// A string; its span is what stands between the quotes.
@@ -25,7 +25,7 @@ pub(super) enum Token {
 /// An argument of a request: an array, or a lone number or string, which may stand for an array of one.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Argument {
-    pub(super) values: Values,
+    pub(super) values: ArgumentValues,
     pub(super) span: Span,
     /// Whether it stands without brackets.
     pub(super) is_lone: bool,
@@ -33,7 +33,7 @@ pub(super) struct Argument {
 
 /// The values of an argument.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Values {
+pub(super) enum ArgumentValues {
     /// Numbers; an empty array is one of them.
     Numbers(Vec<f64>),
     /// Strings, by their places in the file.
@@ -41,14 +41,14 @@ pub(super) enum Values {
 }
 
 /// The tokens of a file, one after the other.
-pub(super) struct Scanner<'a> {
+pub(super) struct RibScanner<'a> {
     bytes: &'a [u8],
     at: usize,
     /// A token that was looked at.
-    ahead: Option<(Token, Span)>,
+    ahead: Option<(RibToken, Span)>,
 }
 
-impl<'a> Scanner<'a> {
+impl<'a> RibScanner<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, ahead: None }
     }
@@ -59,7 +59,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// The next token, which stays there; `None` at the end.
-    fn peek(&mut self) -> Result<Option<(Token, Span)>, Diagnostic> {
+    fn peek(&mut self) -> Result<Option<(RibToken, Span)>, Diagnostic> {
         if self.ahead.is_none() {
             self.ahead = self.scan()?;
         }
@@ -67,7 +67,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// The next token.
-    pub(super) fn next(&mut self) -> Result<Option<(Token, Span)>, Diagnostic> {
+    pub(super) fn next(&mut self) -> Result<Option<(RibToken, Span)>, Diagnostic> {
         let next = self.peek()?;
         self.ahead = None;
         Ok(next)
@@ -76,7 +76,7 @@ impl<'a> Scanner<'a> {
     /// Goes on to the next request, and says how it is called; `None` at the end.
     pub(super) fn request(&mut self) -> Result<Option<Span>, Diagnostic> {
         while let Some((token, span)) = self.next()? {
-            if token == Token::Word {
+            if token == RibToken::Word {
                 return Ok(Some(span));
             }
         }
@@ -87,15 +87,15 @@ impl<'a> Scanner<'a> {
     pub(super) fn arguments(&mut self) -> Result<Vec<Argument>, Diagnostic> {
         let mut all = Vec::new();
         let mut room = MAX_LIST_NUMBERS;
-        while let Some((token, span)) = self.peek()?.filter(|(token, _)| *token != Token::Word) {
+        while let Some((token, span)) = self.peek()?.filter(|(token, _)| *token != RibToken::Word) {
             self.ahead = None;
             let lone = |values| Argument { values, span, is_lone: true };
             all.push(match token {
-                Token::Number(number) => lone(Values::Numbers(vec![number])),
-                Token::Text => lone(Values::Texts(vec![span])),
-                Token::Open => self.array(span, &mut room)?,
-                Token::Close => return Err(Diagnostic::error(Some(span), "no array is open here")),
-                Token::Word => unreachable!("words end the arguments"),
+                RibToken::Number(number) => lone(ArgumentValues::Numbers(vec![number])),
+                RibToken::Text => lone(ArgumentValues::Texts(vec![span])),
+                RibToken::Open => self.array(span, &mut room)?,
+                RibToken::Close => return Err(Diagnostic::error(Some(span), "no array is open here")),
+                RibToken::Word => unreachable!("words end the arguments"),
             });
             room = room.checked_sub(ARGUMENT).ok_or_else(|| too_many(span))?;
         }
@@ -110,13 +110,13 @@ impl<'a> Scanner<'a> {
                 return Err(Diagnostic::error(Some(open), "the array is not closed").expected("expected `]`"));
             };
             match token {
-                Token::Number(number) => numbers.push(number),
-                Token::Text => texts.push(span),
-                Token::Close => {
+                RibToken::Number(number) => numbers.push(number),
+                RibToken::Text => texts.push(span),
+                RibToken::Close => {
                     let span = Span { start: open.start, end: span.end };
                     let values = match (numbers.is_empty(), texts.is_empty()) {
-                        (_, true) => Values::Numbers(numbers),
-                        (true, false) => Values::Texts(texts),
+                        (_, true) => ArgumentValues::Numbers(numbers),
+                        (true, false) => ArgumentValues::Texts(texts),
                         (false, false) => {
                             let message = "the array has numbers and strings";
                             return Err(Diagnostic::error(Some(span), message));
@@ -124,7 +124,7 @@ impl<'a> Scanner<'a> {
                     };
                     return Ok(Argument { values, span, is_lone: false });
                 }
-                Token::Open | Token::Word => {
+                RibToken::Open | RibToken::Word => {
                     let error = Diagnostic::error(Some(span), "this stands in an array");
                     return Err(error.expected("expected numbers or strings, then `]`"));
                 }
@@ -134,7 +134,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// The token at the present place, after blanks and comments.
-    fn scan(&mut self) -> Result<Option<(Token, Span)>, Diagnostic> {
+    fn scan(&mut self) -> Result<Option<(RibToken, Span)>, Diagnostic> {
         let first = loop {
             match self.bytes.get(self.at) {
                 None => return Ok(None),
@@ -148,7 +148,7 @@ impl<'a> Scanner<'a> {
         match first {
             b'[' | b']' => {
                 self.at += 1;
-                let token = if first == b'[' { Token::Open } else { Token::Close };
+                let token = if first == b'[' { RibToken::Open } else { RibToken::Close };
                 Ok(Some((token, span(self.at))))
             }
             b'"' => self.string(start).map(Some),
@@ -158,7 +158,7 @@ impl<'a> Scanner<'a> {
                 });
                 let span = span(self.at);
                 if !matches!(first, b'0'..=b'9' | b'+' | b'-' | b'.') {
-                    return Ok(Some((Token::Word, span)));
+                    return Ok(Some((RibToken::Word, span)));
                 }
                 let word = std::str::from_utf8(&self.bytes[start..self.at]).ok();
                 let number = word.and_then(|word| word.parse::<f64>().ok()).filter(|x| x.is_finite());
@@ -166,20 +166,20 @@ impl<'a> Scanner<'a> {
                     let message = format!("`{}` is no finite number", clip(&self.text(span)));
                     Diagnostic::error(Some(span), message)
                 };
-                Ok(Some((Token::Number(number.ok_or_else(error)?), span)))
+                Ok(Some((RibToken::Number(number.ok_or_else(error)?), span)))
             }
         }
     }
 
     /// A string, at its first quote.
-    fn string(&mut self, start: usize) -> Result<(Token, Span), Diagnostic> {
+    fn string(&mut self, start: usize) -> Result<(RibToken, Span), Diagnostic> {
         self.at += 1;
         loop {
             self.skip(|byte| !matches!(byte, b'"' | b'\\'));
             match self.bytes.get(self.at) {
                 Some(b'"') => {
                     self.at += 1;
-                    return Ok((Token::Text, Span::new(start + 1, self.at - 1)));
+                    return Ok((RibToken::Text, Span::new(start + 1, self.at - 1)));
                 }
                 Some(_) => self.at = (self.at + 2).min(self.bytes.len()),
                 None => {

@@ -22,7 +22,7 @@ pub(super) enum JsonKind {
 }
 
 #[derive(Clone, Copy)]
-struct Item {
+struct JsonItem {
     kind: JsonKind,
     span: Span,
     /// The place in the list behind the value.
@@ -32,7 +32,7 @@ struct Item {
 /// A text that has been read.
 pub(super) struct Json<'a> {
     bytes: &'a [u8],
-    items: Vec<Item>,
+    items: Vec<JsonItem>,
 }
 
 /// A value: its place in the list.
@@ -47,7 +47,7 @@ impl<'a> Json<'a> {
         Ok(Self { bytes, items: reader.items })
     }
 
-    fn item(&self, value: JsonValue) -> Item {
+    fn item(&self, value: JsonValue) -> JsonItem {
         self.items[value as usize]
     }
 
@@ -68,7 +68,7 @@ impl<'a> Json<'a> {
 
     /// A number; one beyond all f64 is infinite.
     pub(super) fn number(&self, value: JsonValue) -> Option<f64> {
-        let Item { kind, span, .. } = self.item(value);
+        let JsonItem { kind, span, .. } = self.item(value);
         let word = std::str::from_utf8(&self.bytes[span.start as usize..span.end as usize]).ok()?;
         if kind == JsonKind::Number { word.parse().ok() } else { None }
     }
@@ -82,7 +82,7 @@ impl<'a> Json<'a> {
 
     /// The members of an object, names and values; or none.
     pub(super) fn members(&self, object: JsonValue) -> impl Iterator<Item = (JsonValue, JsonValue)> {
-        let Item { kind, end, .. } = self.item(object);
+        let JsonItem { kind, end, .. } = self.item(object);
         let mut at = if kind == JsonKind::Object { object + 1 } else { end };
         std::iter::from_fn(move || {
             let key = at;
@@ -100,7 +100,7 @@ impl<'a> Json<'a> {
 
     /// The values of an array; or none.
     pub(super) fn values(&self, array: JsonValue) -> impl Iterator<Item = JsonValue> {
-        let Item { kind, end, .. } = self.item(array);
+        let JsonItem { kind, end, .. } = self.item(array);
         let mut at = if kind == JsonKind::Array { array + 1 } else { end };
         std::iter::from_fn(move || {
             let value = at;
@@ -115,7 +115,7 @@ impl<'a> Json<'a> {
 struct JsonReader<'a> {
     bytes: &'a [u8],
     at: usize,
-    items: Vec<Item>,
+    items: Vec<JsonItem>,
     /// Objects and arrays that are not closed.
     open: Vec<u32>,
 }
@@ -179,7 +179,7 @@ impl JsonReader<'_> {
             return Err(Diagnostic::limit(Some(span), format!("more than {MAX_NODES} values")));
         }
         let end = self.items.len() as u32 + 1;
-        self.items.push(Item { kind, span: Span::new(start, self.at), end });
+        self.items.push(JsonItem { kind, span: Span::new(start, self.at), end });
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use jbt_model::term::Term;
 use jbt_model::tree::Tree;
 
 use super::json::JsonValue;
-use super::reader::Reader;
+use super::reader::TreeReader;
 use super::scalis::{self, PEAK, Vertex, dot, from, square};
 
 /// A tree, and the box that the library gives it.
@@ -31,7 +31,7 @@ impl Placed {
 
 /// How a SCALIS primitive fills the space around its skeleton.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Volume {
+enum ScalisVolume {
     Distance,
     Convolution,
 }
@@ -47,7 +47,7 @@ fn leaf(skeleton: impl Into<Skeleton>, radius: f64, strength: f64) -> Tree {
     Tree::new(Primitive { skeleton, falloff: Falloff::Wyvill, radius, strength }, Vec::new())
 }
 
-impl Reader<'_> {
+impl TreeReader<'_> {
     fn vertices<const N: usize>(&self, node: JsonValue) -> Result<[Vertex; N], Diagnostic> {
         let list = self.needed(node, "v")?;
         let all = self.json.values(list).take(N + 1).map(|vertex| {
@@ -60,11 +60,11 @@ impl Reader<'_> {
         })
     }
 
-    fn volume(&self, node: JsonValue) -> Result<Volume, Diagnostic> {
+    fn volume(&self, node: JsonValue) -> Result<ScalisVolume, Diagnostic> {
         let (word, value) = self.needed_text(node, "volType")?;
         match word {
-            "dist" => Ok(Volume::Distance),
-            "convol" => Ok(Volume::Convolution),
+            "dist" => Ok(ScalisVolume::Distance),
+            "convol" => Ok(ScalisVolume::Convolution),
             _ => {
                 Err(self.error(value, "the volType is not known").expected("expected \"dist\" or \"convol\""))
             }
@@ -99,11 +99,13 @@ impl Reader<'_> {
         let density = self.density(node)?;
         let cubes = vertices.map(|vertex| (vertex.at, 2.0 * vertex.thickness));
         let tree = match self.volume(node)? {
-            Volume::Distance if a.thickness == b.thickness => {
+            ScalisVolume::Distance if a.thickness == b.thickness => {
                 leaf(Segment { from: a.at, to: b.at }, 2.0 * a.thickness, PEAK * density)
             }
-            Volume::Distance => formula(scalis::kernel(&scalis::segment(vertices).1, density), &cubes),
-            Volume::Convolution => formula(scalis::line(vertices).ok_or_else(|| self.steep(node))?, &cubes),
+            ScalisVolume::Distance => formula(scalis::kernel(&scalis::segment(vertices).1, density), &cubes),
+            ScalisVolume::Convolution => {
+                formula(scalis::line(vertices).ok_or_else(|| self.steep(node))?, &cubes)
+            }
         };
         // By the foot of the perpendicular, whatever the field takes.
         let parts = || {
@@ -129,11 +131,11 @@ impl Reader<'_> {
         }
         let even = a.thickness == b.thickness && b.thickness == c.thickness;
         let tree = match self.volume(node)? {
-            Volume::Distance if even => {
+            ScalisVolume::Distance if even => {
                 leaf(Triangle { a: a.at, b: b.at, c: c.at }, 2.0 * a.thickness, PEAK * density)
             }
-            Volume::Distance => formula(scalis::kernel(&scalis::triangle(vertices).1, density), &cubes),
-            Volume::Convolution => {
+            ScalisVolume::Distance => formula(scalis::kernel(&scalis::triangle(vertices).1, density), &cubes),
+            ScalisVolume::Convolution => {
                 formula(scalis::surface(vertices).ok_or_else(|| self.steep(node))?, &cubes)
             }
         };

@@ -7,7 +7,7 @@ use jbt_model::term::Term;
 use jbt_model::tree::Tree;
 
 use super::json::{JsonKind, JsonValue};
-use super::reader::{Reader, SURFACE};
+use super::reader::{SURFACE, TreeReader};
 use crate::import::srgb;
 
 /// A linear colour, roughness and metalness.
@@ -20,7 +20,7 @@ pub(super) struct Material {
 /// What the library takes for a material that says nothing.
 const GREY: f64 = 170.0 / 255.0;
 
-impl Reader<'_> {
+impl TreeReader<'_> {
     /// Finds out which attributes the materials of the file ask for.
     pub(super) fn find_surface(&mut self) {
         self.surface = SURFACE.map(|(member, _)| self.json.has_number(member));
@@ -92,8 +92,8 @@ impl Reader<'_> {
         Ok([channel(16), channel(8), channel(0)])
     }
 
-    /// A tree of one material, or of a mixture by the parts that the vertices have at each point, which add up
-    /// to 1.
+    /// A tree of one material, or of a mixture by the parts that the vertices have at each point, which add
+    /// up to 1.
     pub(super) fn clothed(
         &self,
         tree: Tree,

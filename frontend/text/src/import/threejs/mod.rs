@@ -25,10 +25,10 @@ use jbt_model::model::Model;
 use jbt_model::orientation::Orientation;
 
 use self::json::Json;
-use self::reader::Reader;
+use self::reader::TreeReader;
 use super::Imported;
 use super::format::SceneFormatRow;
-use super::tally::Tally;
+use super::tally::LeftOut;
 
 /// An object that soon says its type.
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
@@ -45,8 +45,8 @@ pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
 /// # Errors
 ///
 /// The first error of the file, with its place: what is no JSON, members that are missing or have no meaning,
-/// types that are not known, functors that a page has registered, convolutions whose thickness changes by half
-/// the length or more.
+/// types that are not known, functors that a page has registered, convolutions whose thickness changes by
+/// half the length or more.
 pub fn threejs(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     Imported::from(bytes, read(bytes))
 }
@@ -58,7 +58,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     }
     let json = Json::read(bytes).map_err(|error| vec![error])?;
     let mut reader =
-        Reader { json, left_out: Tally::default(), negative: false, surface: Default::default() };
+        TreeReader { json, left_out: LeftOut::default(), negative: false, surface: Default::default() };
     reader.find_surface();
     let model = model(&mut reader);
     let warnings = reader.left_out.finish();
@@ -68,7 +68,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     }
 }
 
-fn model(reader: &mut Reader<'_>) -> Result<Model, Diagnostic> {
+fn model(reader: &mut TreeReader<'_>) -> Result<Model, Diagnostic> {
     let iso = match reader.json.member(0, "iso") {
         Some(_) => reader.positive(0, "iso")?,
         None => 1.0,

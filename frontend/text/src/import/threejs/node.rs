@@ -11,11 +11,11 @@ use jbt_model::warp::{Twist, Warp};
 
 use super::json::JsonValue;
 use super::leaf::Placed;
-use super::reader::Reader;
+use super::reader::TreeReader;
 
 /// What a node does to its children.
 #[derive(Clone, Copy)]
-enum Operation {
+enum NodeOperation {
     Combine(Combinator),
     /// The first less a power of the second.
     Difference(f64),
@@ -27,9 +27,9 @@ enum Operation {
 }
 
 /// What is left to do.
-enum Task {
+enum NodeTask {
     Enter(JsonValue),
-    Leave(JsonValue, Operation, usize),
+    Leave(JsonValue, NodeOperation, usize),
 }
 
 /// All types of nodes, for hints.
@@ -50,22 +50,22 @@ const TYPES: [&str; 11] = [
 /// How near to y an axis is y.
 const NEAR: f64 = 1e-4;
 
-impl Reader<'_> {
+impl TreeReader<'_> {
     /// The tree below a node.
     pub(super) fn tree(&mut self, root: JsonValue) -> Result<Tree, Diagnostic> {
         let mut done: Vec<Placed> = Vec::new();
-        let mut tasks = vec![Task::Enter(root)];
+        let mut tasks = vec![NodeTask::Enter(root)];
         while let Some(task) = tasks.pop() {
             match task {
-                Task::Enter(node) => match self.enter(node)? {
+                NodeTask::Enter(node) => match self.enter(node)? {
                     Entered::Leaf(placed) => done.push(placed),
                     Entered::Operator(operation) => {
                         let children = self.children(node)?;
-                        tasks.push(Task::Leave(node, operation, children.len()));
-                        tasks.extend(children.into_iter().rev().map(Task::Enter));
+                        tasks.push(NodeTask::Leave(node, operation, children.len()));
+                        tasks.extend(children.into_iter().rev().map(NodeTask::Enter));
                     }
                 },
-                Task::Leave(node, operation, count) => {
+                NodeTask::Leave(node, operation, count) => {
                     let children = done.split_off(done.len() - count);
                     done.push(self.apply(node, operation, children)?);
                 }
@@ -92,20 +92,20 @@ impl Reader<'_> {
             "SDFRootNode" => return self.distance(node).map(Entered::Leaf),
             "RootNode" | "RicciNode" => {
                 let default = if kind == "RootNode" { Some(64.0) } else { None };
-                Operation::Combine(self.ricci(node, default)?)
+                NodeOperation::Combine(self.ricci(node, default)?)
             }
-            "MinNode" => Operation::Combine(Intersection {}.into()),
-            "MaxNode" => Operation::Combine(Union {}.into()),
+            "MinNode" => NodeOperation::Combine(Intersection {}.into()),
+            "MaxNode" => NodeOperation::Combine(Union {}.into()),
             // The library writes its difference under the name of its parent.
-            "DifferenceNode" => Operation::Difference(self.alpha(node)?),
-            "Node" if has_alpha => Operation::Difference(self.alpha(node)?),
+            "DifferenceNode" => NodeOperation::Difference(self.alpha(node)?),
+            "Node" if has_alpha => NodeOperation::Difference(self.alpha(node)?),
             "ScaleNode" => {
                 let scale =
                     DVec3::new(number("scale_x", 1.0)?, number("scale_y", 1.0)?, number("scale_z", 1.0)?);
                 if scale.cmpeq(DVec3::ZERO).any() {
                     return Err(self.error(node, "the scale has a 0"));
                 }
-                Operation::Scale(scale)
+                NodeOperation::Scale(scale)
             }
             "TwistNode" => {
                 // The library's spelling; the usual one is read as well.
@@ -117,7 +117,7 @@ impl Reader<'_> {
                 if axis == DVec3::ZERO {
                     return Err(self.error(node, "the axis of the twist has no length"));
                 }
-                Operation::Twist { axis, rate }
+                NodeOperation::Twist { axis, rate }
             }
             _ => {
                 let error = self.error(value, format!("there is no node of the type {}", clip(kind)));
@@ -154,18 +154,18 @@ impl Reader<'_> {
     fn apply(
         &mut self,
         node: JsonValue,
-        operation: Operation,
+        operation: NodeOperation,
         mut children: Vec<Placed>,
     ) -> Result<Placed, Diagnostic> {
         let span = self.json.span(node);
         match operation {
-            Operation::Combine(combinator) => {
+            NodeOperation::Combine(combinator) => {
                 let low = children.iter().map(|child| child.low).reduce(DVec3::min).unwrap_or_default();
                 let high = children.iter().map(|child| child.high).reduce(DVec3::max).unwrap_or_default();
                 let trees: Vec<Tree> = children.into_iter().map(|child| child.tree).collect();
                 Ok(Placed { tree: self.combined(span, combinator, trees), low, high })
             }
-            Operation::Difference(alpha) => {
+            NodeOperation::Difference(alpha) => {
                 let Ok([body, cutter]) = <[Placed; 2]>::try_from(children) else {
                     return Err(self.error(node, "a difference has two children"));
                 };
@@ -174,7 +174,7 @@ impl Reader<'_> {
                 let tree = Tree::expression((body.tree.field() - taken).max(0.0));
                 Ok(Placed { tree, ..body })
             }
-            Operation::Scale(_) | Operation::Twist { .. } => {
+            NodeOperation::Scale(_) | NodeOperation::Twist { .. } => {
                 let low = children.iter().map(|child| child.low).reduce(DVec3::min).unwrap_or_default();
                 let high = children.iter().map(|child| child.high).reduce(DVec3::max).unwrap_or_default();
                 if children.len() > 1 {
@@ -205,27 +205,27 @@ impl Reader<'_> {
 
 enum Entered {
     Leaf(Placed),
-    Operator(Operation),
+    Operator(NodeOperation),
 }
 
 /// A scale or a twist about the middle of a box.
-fn moved(operation: Operation, child: Placed) -> Placed {
+fn moved(operation: NodeOperation, child: Placed) -> Placed {
     let Placed { tree, low, high } = child;
     let center = low.midpoint(high);
     let (to, back) = (DAffine3::from_translation(center), DAffine3::from_translation(-center));
     match operation {
-        Operation::Scale(scale) => {
+        NodeOperation::Scale(scale) => {
             let grown = (high - low) * (scale - 1.0);
             let tree = Tree::new(to * DAffine3::from_scale(scale) * back, vec![tree]);
             Placed { tree, low: low - grown, high: high + grown }
         }
-        Operation::Twist { axis, rate } => {
+        NodeOperation::Twist { axis, rate } => {
             let turn = DAffine3::from_quat(shortest(axis));
             let twist = Warp::from(Twist { axis: Axis::Y, rate });
             let twisted = Tree::new(twist, vec![Tree::new(turn * back, vec![tree])]);
             Placed { tree: Tree::new(to * turn.inverse(), vec![twisted]), low, high }
         }
-        Operation::Combine(_) | Operation::Difference(_) => Placed { tree, low, high },
+        NodeOperation::Combine(_) | NodeOperation::Difference(_) => Placed { tree, low, high },
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use jbt_model::diagnostic::Diagnostic;
 
 use super::json::{Json, JsonKind, JsonValue};
-use crate::import::tally::Tally;
+use crate::import::tally::LeftOut;
 
 /// What materials have beside a colour: the members of a file and the attributes. An attribute is there if
 /// any material has a number other than 0.
@@ -14,16 +14,16 @@ pub(super) const SURFACE: [(&str, &str); 2] = [("roughness", "rough"), ("metalne
 pub(super) type Surface = [bool; SURFACE.len()];
 
 /// A file that is being read.
-pub(super) struct Reader<'a> {
+pub(super) struct TreeReader<'a> {
     pub(super) json: Json<'a>,
-    pub(super) left_out: Tally,
+    pub(super) left_out: LeftOut,
     /// Whether a field may be negative somewhere.
     pub(super) negative: bool,
     /// What materials have beside colours.
     pub(super) surface: Surface,
 }
 
-impl Reader<'_> {
+impl TreeReader<'_> {
     pub(super) fn error(&self, value: JsonValue, message: impl Into<String>) -> Diagnostic {
         Diagnostic::error(Some(self.json.span(value)), message)
     }
