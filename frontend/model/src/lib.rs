@@ -32,6 +32,7 @@ pub mod number;
 pub mod origin;
 pub mod owner;
 pub mod parameter;
+pub mod particles;
 mod power;
 pub mod query;
 pub mod report;
