@@ -150,9 +150,9 @@ impl Tree {
         })
     }
 
-    /// The same with every primitive changed; particles stay as they are. Numbers that the change leaves alone follow their parameters
-    /// still. The change sees the present values, and the support radius that a surface radius gives at the
-    /// usual iso-value; a primitive that has no surface there stays as it is.
+    /// The same with every primitive changed; particles stay as they are. Numbers that the change leaves
+    /// alone follow their parameters still. The change sees the present values, and the support radius that a
+    /// surface radius gives at the usual iso-value; a primitive that has no surface there stays as it is.
     #[must_use]
     pub fn map_primitives(&self, mut change: impl FnMut(&mut Primitive)) -> Self {
         self.rewrite(|tree| {

@@ -14,6 +14,8 @@ mod falloff;
 mod field;
 mod particles;
 mod plain;
+mod points;
+mod surface;
 
 use std::sync::Arc;
 
@@ -22,8 +24,7 @@ use glam::DAffine3;
 use crate::combine::CombinatorKind;
 use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
-use crate::falloff::Falloff;
-use crate::field::{FieldKind, FieldValue, plain};
+use crate::field::{FieldKind, FieldValue};
 use crate::kind::{NodeKind, Primitive};
 use crate::map::MapKind;
 use crate::number::{Number, ParameterValues, Step};
@@ -37,6 +38,7 @@ pub use falloff::WrittenFalloff;
 pub use field::FieldNumber;
 pub use field::as_written;
 pub use particles::{ParticleRadius, WrittenParticles};
+use surface::support_radius;
 
 /// The radius of a primitive.
 #[derive(Clone, PartialEq, Debug)]
@@ -416,35 +418,4 @@ impl Written {
         let falloff = if new.falloff == old.falloff { falloff.clone() } else { new.falloff.into() };
         Self::Primitive { skeleton, fields, falloff, radius, strength }
     }
-}
-
-/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)`, see
-/// [`surface_scale`].
-fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
-    if radius.is_nan() || (iso / strength).is_nan() {
-        return Ok(f64::NAN);
-    }
-    if radius <= 0.0 {
-        let message = format!("the surface radius is {}", plain(radius));
-        return Err(Fault { message, help: Some("expected a number above 0") });
-    }
-    Ok(radius / surface_scale(falloff, strength, iso)?)
-}
-
-/// What divides the surface radius of a primitive alone to give that of its support: the root of the s that
-/// solves `falloff(s) = iso / strength`, the squared distance over the squared support radius. A NaN if one
-/// of the numbers is.
-fn surface_scale(falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
-    let level = iso / strength;
-    if level.is_nan() {
-        return Ok(f64::NAN);
-    }
-    if !(level > 0.0 && level < 1.0) {
-        let (iso, strength) = (plain(iso), plain(strength));
-        return Err(Fault {
-            message: format!("with strength {strength} the primitive has no surface at iso {iso}"),
-            help: Some("expected a strength above iso, or `radius`, the radius of the support"),
-        });
-    }
-    Ok(falloff.inverse(level).sqrt())
 }

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
+use super::falloff::WrittenFalloff;
 use super::field::FieldNumber;
-use super::{Radius, Written, WrittenAttribute, WrittenFalloff, support_radius, surface_scale};
+use super::surface::{support_radius, surface_scale};
 use crate::falloff::Falloff;
-use crate::field::FieldOf;
 use crate::number::Number;
 use crate::particles::{NumberArray, ParticleValues, Particles, PerParticle};
 use crate::report::{Fault, clip};
-use crate::skeleton::SkeletonKind;
 
 /// The radii of particles.
 #[derive(Clone, PartialEq, Debug)]
@@ -202,35 +201,6 @@ impl WrittenParticles {
         }
         Ok(())
     }
-
-    /// The points whose sum they mean, as nodes of their own, each with the attributes that it has. Panics if
-    /// arrays have other lengths than they should.
-    #[must_use]
-    pub fn points(&self) -> Vec<(Written, Vec<(Arc<str>, WrittenAttribute)>)> {
-        let number = |numbers: &PerParticle<Number>, particle: usize| match numbers {
-            PerParticle::All(number) => number.clone(),
-            PerParticle::Each(numbers) => numbers.at(particle).into(),
-        };
-        let point = |particle: usize| {
-            let radius = number(self.radius.numbers(), particle);
-            let written = Written::Primitive {
-                skeleton: SkeletonKind::Point,
-                fields: vec![FieldOf::Vector(self.positions.triple(particle)).into()],
-                falloff: self.falloff.clone(),
-                radius: match &self.radius {
-                    ParticleRadius::Support(_) => Radius::Support(radius),
-                    ParticleRadius::Surface(_) => Radius::Surface(radius),
-                },
-                strength: number(&self.strength, particle),
-            };
-            let given = |values: &ParticleValues| {
-                let numbers = values.of(particle).map(Number::from).collect();
-                (Arc::clone(&values.name), WrittenAttribute::Numbers(numbers))
-            };
-            (written, self.values.iter().map(given).collect())
-        };
-        (0..self.len()).map(point).collect()
-    }
 }
 
 impl From<Particles> for WrittenParticles {
@@ -242,11 +212,5 @@ impl From<Particles> for WrittenParticles {
             falloff: (*particles.falloff()).into(),
             values: Arc::clone(particles.values()),
         }
-    }
-}
-
-impl From<WrittenParticles> for Written {
-    fn from(particles: WrittenParticles) -> Self {
-        Self::Particles(Box::new(particles))
     }
 }
