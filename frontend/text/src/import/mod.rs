@@ -7,9 +7,12 @@ mod format;
 mod imported;
 mod jbt;
 mod parsip;
+pub mod particles;
 mod vm;
 
 pub use format::SceneFormat;
 pub use imported::Imported;
 pub use parsip::parsip;
 pub use vm::vm;
+
+use particles::{cif, csv, npy, pdb, ply, vtk, vtu, xyz};
