@@ -14,6 +14,7 @@
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
+use jbt::import::particles::ParticleOptions;
 use jbt::sample::Sampler;
 use jbt::{CheckedTree, Compiler, Query, SceneFormat, text};
 use jbt_benches::memory::peak;
@@ -26,13 +27,13 @@ const RUNS: usize = 3;
 
 /// What is read.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Given {
+enum ParticleInput {
     Nodes,
     Arrays,
     Numpy,
 }
 
-impl Given {
+impl ParticleInput {
     const ALL: [(Self, &'static str); 3] =
         [(Self::Nodes, "nodes"), (Self::Arrays, "arrays"), (Self::Numpy, "npy")];
 }
@@ -51,17 +52,22 @@ fn numpy(blobs: &[Blob]) -> Vec<u8> {
 }
 
 /// Makes rows in this process, and prints the row of the table.
-fn run(given: Given, name: &str, count: usize) {
+fn run(given: ParticleInput, name: &str, count: usize) {
     let blobs = particles(count, 1);
     let count = blobs.len();
     let radius = f64::from(blobs[0].radius);
-    let file = if given == Given::Numpy { numpy(&blobs) } else { Vec::new() };
-    let blobs = if given == Given::Numpy { Vec::new() } else { blobs };
+    let particles = ParticleOptions { radius: Some(radius / 2.0), ..ParticleOptions::default() };
+    let options = text::Options { particles, ..text::Options::default() };
+    let file = if given == ParticleInput::Numpy { numpy(&blobs) } else { Vec::new() };
+    let blobs = if given == ParticleInput::Numpy { Vec::new() } else { blobs };
     let checked = || -> CheckedTree {
         match given {
-            Given::Nodes => tree(&blobs),
-            Given::Arrays => cloud(&blobs),
-            Given::Numpy => cloud(&blobs),
+            ParticleInput::Nodes => tree(&blobs),
+            ParticleInput::Arrays => cloud(&blobs),
+            ParticleInput::Numpy => {
+                let read = SceneFormat::Npy.read("places.npy", &file, &options).expect("it is a good file");
+                read.model.check().expect("particles are a good model")
+            }
         }
     };
     let mut best = [f64::INFINITY; 2];
@@ -83,8 +89,8 @@ fn table(largest: usize) -> std::io::Result<ExitCode> {
     println!("| given | particles | seconds to a checked model | seconds to rows | peak MB |");
     println!("|---|---:|---:|---:|---:|");
     let counts = [largest / 100, largest / 10, largest];
-    for (given, name) in Given::ALL {
-        for count in counts.into_iter().filter(|&count| given != Given::Nodes || count < largest) {
+    for (given, name) in ParticleInput::ALL {
+        for count in counts.into_iter().filter(|&count| given != ParticleInput::Nodes || count < largest) {
             let status = Command::new(std::env::current_exe()?).args([name, &count.to_string()]).status()?;
             if !status.success() {
                 eprintln!("{name} of {count}: {status}");
@@ -101,7 +107,7 @@ fn main() -> ExitCode {
         |text: &str| text.replace(',', "").parse().ok().filter(|count| (1_000..=100_000_000).contains(count));
     let largest = match words.as_slice() {
         [given, count] => {
-            let given = Given::ALL.into_iter().find(|(_, name)| name == given);
+            let given = ParticleInput::ALL.into_iter().find(|(_, name)| name == given);
             if let (Some((given, name)), Some(count)) = (given, number(count)) {
                 run(given, name, count);
                 return ExitCode::SUCCESS;

@@ -13,6 +13,7 @@ use super::demand::Demand;
 use super::names::ComputedId;
 pub(super) use super::names::{BindingsId, FieldId, InstanceId, PositionId, SpaceId};
 use super::position::{MapKind, Position};
+use super::run::{LeafNumbers, PointRun};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, MapCode, ReduceCode};
 use jbt_model::expression::Expression;
@@ -27,8 +28,6 @@ mod asked;
 mod binding;
 mod find;
 mod particles;
-
-pub(super) use self::particles::{LeafNumbers, PointRun};
 
 /// What a leaf is bound to, of one attribute group.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::instance::{FieldId, LeafNumbers, Scene};
+use super::instance::{FieldId, Scene};
+use super::run::LeafNumbers;
 use super::shape::Hoist;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::{NodeKind, Primitive};

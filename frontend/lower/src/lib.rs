@@ -18,6 +18,7 @@
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `columns`: what each column is called, and its number.
 //! * `recipe`: how the rows of a table are filled: `emit` writes that down as it declares columns.
+//! * `run`: particles that have one code are one leaf, which stands for many rows.
 //! * `rows`: fills every row by the recipe of its table; those of particles in parts, which `workers` do at
 //!   once.
 //! * `support`: finds for each instance where it can be anything but zero, in the program's own arithmetic.
@@ -43,6 +44,7 @@ pub mod prune_info;
 mod ranges;
 mod recipe;
 mod rows;
+mod run;
 mod shape;
 mod slopes;
 mod support;

@@ -3,9 +3,10 @@
 use jbt_ir::{Entity, Rows, Schema, Store, Tables};
 
 use super::emit::Code;
-use super::instance::{PointRun, Scene};
+use super::instance::Scene;
 use super::names::{FieldId, InstanceId};
 use super::recipe::{Member, Owned, RowPlace, RowPlaces, RowStep};
+use super::run::PointRun;
 use super::shape::Shapes;
 use super::workers::{Workers, in_parts};
 use jbt_model::diagnostic::Diagnostic;

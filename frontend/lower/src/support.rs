@@ -34,12 +34,11 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
-use super::instance::{
-    FieldId, InstanceId, InstanceKind, LeafField, LeafNumbers, PointRun, PositionId, Scene,
-};
+use super::instance::{FieldId, InstanceId, InstanceKind, LeafField, PositionId, Scene};
 use super::position::{MapKind, Position};
 use super::prune_info::{LARGEST_COORDINATE, Support};
 use super::rows::ROWS_AT_ONCE;
+use super::run::{LeafNumbers, PointRun};
 use super::workers::{Workers, in_parts};
 use jbt_model::affine::{Similarity, map_bounds};
 use jbt_model::bounds::Bounds;

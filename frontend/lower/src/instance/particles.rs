@@ -5,37 +5,12 @@
 
 use super::find::Finder;
 use super::{BindingsId, FieldId, InstanceKind, LeafCode, LeafField, PositionId};
+use crate::run::PointRun;
 use jbt_model::check::NodeId;
 use jbt_model::combine::{OperatorForm, Sum};
-use jbt_model::falloff::Falloff;
 use jbt_model::particles::{Particles, PerParticle};
 use jbt_model::skeleton::{Skeleton, SkeletonKind};
 use jbt_model::written::Written;
-
-/// The particles of a node that have one code, in their order.
-#[derive(Clone, Debug)]
-pub(crate) struct PointRun {
-    /// Their places in the arrays of the node; if there are none, it is all of them.
-    chosen: Option<Box<[u32]>>,
-    count: u32,
-    /// How many places in the order of operands are taken once this run has been met: those of all particles
-    /// of the node for its last run, none for another one.
-    pub(crate) places: u32,
-    /// Whether no field of them can be negative.
-    pub(super) non_negative: bool,
-}
-
-impl PointRun {
-    /// How many there are, at least one.
-    pub(crate) fn len(&self) -> usize {
-        self.count as usize
-    }
-
-    /// The place in the arrays of the node of the one with this number.
-    pub(crate) fn place(&self, number: usize) -> usize {
-        self.chosen.as_ref().map_or(number, |chosen| chosen[number] as usize)
-    }
-}
 
 impl Finder<'_> {
     /// The instance of particles: the sum of their runs.
@@ -50,7 +25,7 @@ impl Finder<'_> {
         let runs = self.runs(node, particles);
         let mut children = Vec::with_capacity(runs.len());
         for (run, strong) in runs {
-            let rows = run.count;
+            let rows = run.len() as u32;
             let field = self.run_field(node, particles, position, (run, strong));
             let computed = self.computed(bindings, (node, rows), position);
             let leaf = InstanceKind::Leaf { field, bindings, computed };
@@ -86,12 +61,7 @@ impl Finder<'_> {
         let depends = self.scene.tree.dependent(node).is_some_and(Written::strength_depends_on_parameters);
         let strengths = match particles.strengths() {
             PerParticle::All(strength) => {
-                let run = PointRun {
-                    chosen: None,
-                    count: all,
-                    places: all,
-                    non_negative: *strength >= 0.0 && !depends,
-                };
+                let run = PointRun::all(all, *strength >= 0.0 && !depends);
                 return vec![(run, depends || *strength != 1.0)];
             }
             PerParticle::Each(strengths) => strengths,
@@ -100,12 +70,12 @@ impl Finder<'_> {
         let first = is_strong(0);
         if (1..particles.len()).all(|place| is_strong(place) == first) {
             let non_negative = strengths.iter().all(|strength| strength >= 0.0);
-            return vec![(PointRun { chosen: None, count: all, places: all, non_negative }, first)];
+            return vec![(PointRun::all(all, non_negative), first)];
         }
         let run = |strong: bool, places: u32| {
             let chosen: Box<[u32]> = (0..all).filter(|&place| is_strong(place as usize) == strong).collect();
             let non_negative = chosen.iter().all(|&place| strengths.at(place as usize) >= 0.0);
-            (PointRun { count: chosen.len() as u32, chosen: Some(chosen), places, non_negative }, strong)
+            (PointRun::some(chosen, places, non_negative), strong)
         };
         vec![run(first, 0), run(!first, all)]
     }
@@ -129,12 +99,4 @@ impl Finder<'_> {
         self.scene.fields.push(LeafField { node, position, uses: 1, map, scale, code, run });
         FieldId(self.scene.fields.len() as u32 - 1)
     }
-}
-
-/// The numbers of a leaf in its pose but for its skeleton: of a primitive, or of one of particles.
-#[derive(Clone, Copy)]
-pub(crate) struct LeafNumbers<'a> {
-    pub(crate) radius: f64,
-    pub(crate) strength: f64,
-    pub(crate) falloff: &'a Falloff,
 }

@@ -2,8 +2,9 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::instance::{Bound, Inside, Instance, InstanceKind, LeafNumbers, PointRun, Scene};
+use crate::instance::{Bound, Inside, Instance, InstanceKind, Scene};
 use crate::names::{ComputedId, FieldId, Hoist, InstanceId};
+use crate::run::{LeafNumbers, PointRun};
 use crate::shape::Shapes;
 use jbt_model::check::NodeId;
 use jbt_model::combine::Combinator;

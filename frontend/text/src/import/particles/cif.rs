@@ -4,7 +4,7 @@
 use super::atoms::{Atom, Atoms};
 use super::elements::element;
 use super::options::ParticleOptions;
-use super::scan::{Word, fault};
+use super::scan::{TextWord, fault};
 use crate::import::format::{SceneFormatRow, first_line};
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -18,7 +18,7 @@ fn is_mine(bytes: &[u8]) -> bool {
 
 /// What is read of an atom.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Item {
+enum AtomItem {
     Group,
     Symbol,
     Name,
@@ -35,32 +35,32 @@ enum Item {
 }
 
 /// Tags behind `_atom_site.`, the better one of two first.
-const TAGS: [(&str, Item); 15] = [
-    ("group_PDB", Item::Group),
-    ("type_symbol", Item::Symbol),
-    ("label_atom_id", Item::Name),
-    ("label_comp_id", Item::Residue),
-    ("auth_asym_id", Item::Chain),
-    ("label_asym_id", Item::Chain),
-    ("auth_seq_id", Item::Number),
-    ("label_seq_id", Item::Number),
-    ("pdbx_PDB_ins_code", Item::Insertion),
-    ("Cartn_x", Item::X),
-    ("Cartn_y", Item::Y),
-    ("Cartn_z", Item::Z),
-    ("occupancy", Item::Occupancy),
-    ("B_iso_or_equiv", Item::Bfac),
-    ("pdbx_PDB_model_num", Item::Model),
+const TAGS: [(&str, AtomItem); 15] = [
+    ("group_PDB", AtomItem::Group),
+    ("type_symbol", AtomItem::Symbol),
+    ("label_atom_id", AtomItem::Name),
+    ("label_comp_id", AtomItem::Residue),
+    ("auth_asym_id", AtomItem::Chain),
+    ("label_asym_id", AtomItem::Chain),
+    ("auth_seq_id", AtomItem::Number),
+    ("label_seq_id", AtomItem::Number),
+    ("pdbx_PDB_ins_code", AtomItem::Insertion),
+    ("Cartn_x", AtomItem::X),
+    ("Cartn_y", AtomItem::Y),
+    ("Cartn_z", AtomItem::Z),
+    ("occupancy", AtomItem::Occupancy),
+    ("B_iso_or_equiv", AtomItem::Bfac),
+    ("pdbx_PDB_model_num", AtomItem::Model),
 ];
 
 /// A token: a word, or a text in quotes or between lines of semicolons.
 #[derive(Clone, Copy)]
-struct Token<'a> {
-    word: Word<'a>,
+struct CifToken<'a> {
+    word: TextWord<'a>,
     quoted: bool,
 }
 
-impl Token<'_> {
+impl CifToken<'_> {
     fn is(self, keyword: &str) -> bool {
         !self.quoted && self.word.text.eq_ignore_ascii_case(keyword.as_bytes())
     }
@@ -91,22 +91,22 @@ impl Token<'_> {
 }
 
 /// The tokens of a file.
-struct Tokens<'a> {
+struct CifTokens<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Tokens<'a> {
-    fn token(&mut self, from: usize, to: usize, end: usize, quoted: bool) -> Token<'a> {
+impl<'a> CifTokens<'a> {
+    fn token(&mut self, from: usize, to: usize, end: usize, quoted: bool) -> CifToken<'a> {
         self.at = end;
-        Token { word: Word { text: &self.bytes[from..to], start: from }, quoted }
+        CifToken { word: TextWord { text: &self.bytes[from..to], start: from }, quoted }
     }
 }
 
-impl<'a> Iterator for Tokens<'a> {
-    type Item = Token<'a>;
+impl<'a> Iterator for CifTokens<'a> {
+    type Item = CifToken<'a>;
 
-    fn next(&mut self) -> Option<Token<'a>> {
+    fn next(&mut self) -> Option<CifToken<'a>> {
         let bytes = self.bytes;
         let find = |from: usize, test: &dyn Fn(u8) -> bool| {
             bytes[from..].iter().position(|&byte| test(byte)).map_or(bytes.len(), |length| from + length)
@@ -149,10 +149,10 @@ impl<'a> Iterator for Tokens<'a> {
 }
 
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
-    let mut tokens = Tokens { bytes, at: 0 }.peekable();
+    let mut tokens = CifTokens { bytes, at: 0 }.peekable();
     let mut table = AtomTable::new(options);
     // A table of one row has no loop: tags with their values.
-    let mut single: Vec<(&'static str, Word<'_>)> = Vec::new();
+    let mut single: Vec<(&'static str, TextWord<'_>)> = Vec::new();
     while let Some(token) = tokens.next() {
         if token.is("loop_") {
             let mut tags = Vec::new();
@@ -189,7 +189,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
         && let Some((_, first)) = single.first().copied()
     {
         table.begin(first.span(), single.iter().map(|(tag, _)| *tag))?;
-        let row: Vec<Token<'_>> = single.iter().map(|&(_, word)| Token { word, quoted: false }).collect();
+        let row: Vec<CifToken<'_>> =
+            single.iter().map(|&(_, word)| CifToken { word, quoted: false }).collect();
         table.row(&row)?;
     }
     if table.atoms.is_empty() {
@@ -221,24 +222,27 @@ impl<'o> AtomTable<'o> {
                 self.places[known] = Some(column);
             }
         }
-        match [Item::X, Item::Y, Item::Z].into_iter().all(|item| column(&self.places, item).is_some()) {
+        match [AtomItem::X, AtomItem::Y, AtomItem::Z]
+            .into_iter()
+            .all(|item| column(&self.places, item).is_some())
+        {
             true => Ok(()),
             false => Err(fault(span, "atoms have no places", "the tags Cartn_x, Cartn_y and Cartn_z")),
         }
     }
 
-    fn row(&mut self, row: &[Token<'_>]) -> Result<(), Vec<Diagnostic>> {
+    fn row(&mut self, row: &[CifToken<'_>]) -> Result<(), Vec<Diagnostic>> {
         let places = self.places;
-        let value = |item: Item| -> Option<Word<'_>> {
+        let value = |item: AtomItem| -> Option<TextWord<'_>> {
             let token = row[column(&places, item)?];
             let is_none = !token.quoted && matches!(token.word.text, b"." | b"?");
             (!is_none).then_some(token.word)
         };
-        let text = |item: Item| value(item).map_or(Vec::new(), |word| word.text.to_vec());
-        if value(Item::Group).is_some_and(|word| !matches!(word.text, b"ATOM" | b"HETATM")) {
+        let text = |item: AtomItem| value(item).map_or(Vec::new(), |word| word.text.to_vec());
+        if value(AtomItem::Group).is_some_and(|word| !matches!(word.text, b"ATOM" | b"HETATM")) {
             return Ok(());
         }
-        let (model, wanted) = (text(Item::Model), self.options.frame.unwrap_or(1).max(1));
+        let (model, wanted) = (text(AtomItem::Model), self.options.frame.unwrap_or(1).max(1));
         let frame = match &self.model {
             Some((last, frame)) if *last == model => *frame,
             Some((_, frame)) => frame + 1,
@@ -248,23 +252,24 @@ impl<'o> AtomTable<'o> {
         if frame != wanted {
             return Ok(());
         }
-        let name = (text(Item::Chain), text(Item::Number), text(Item::Insertion), text(Item::Name));
-        let residue = text(Item::Residue);
+        let name =
+            (text(AtomItem::Chain), text(AtomItem::Number), text(AtomItem::Insertion), text(AtomItem::Name));
+        let residue = text(AtomItem::Residue);
         let span = row.first().map_or(Span::new(0, 0), |token| token.word.span());
-        let number = |item: Item, what: &str| match value(item) {
+        let number = |item: AtomItem, what: &str| match value(item) {
             Some(word) => word.expect_number(what),
             None => Err(fault(span, format!("{what} is missing"), "a number")),
         };
-        let optional = |item: Item, default: f64, what: &str| match value(item) {
+        let optional = |item: AtomItem, default: f64, what: &str| match value(item) {
             Some(word) => word.expect_number(what),
             None => Ok(default),
         };
         let made = || {
             Ok(Atom {
-                element: element(&text(Item::Symbol)),
-                at: [number(Item::X, "x")?, number(Item::Y, "y")?, number(Item::Z, "z")?],
-                occupancy: optional(Item::Occupancy, 1.0, "the occupancy")?,
-                bfac: optional(Item::Bfac, 0.0, "the temperature factor")?,
+                element: element(&text(AtomItem::Symbol)),
+                at: [number(AtomItem::X, "x")?, number(AtomItem::Y, "y")?, number(AtomItem::Z, "z")?],
+                occupancy: optional(AtomItem::Occupancy, 1.0, "the occupancy")?,
+                bfac: optional(AtomItem::Bfac, 0.0, "the temperature factor")?,
             })
         };
         self.atoms.push_of(name, &residue, self.options, made)
@@ -272,7 +277,7 @@ impl<'o> AtomTable<'o> {
 }
 
 /// The column of an item: that of the first of its tags that is there.
-fn column(places: &[Option<usize>; TAGS.len()], item: Item) -> Option<usize> {
+fn column(places: &[Option<usize>; TAGS.len()], item: AtomItem) -> Option<usize> {
     let tags = TAGS.iter().zip(places).filter(|((_, of), _)| *of == item);
     tags.filter_map(|(_, place)| *place).next()
 }

@@ -1,9 +1,9 @@
 //! `.csv`, and other tables of numbers as text: a line for each point, with commas, semicolons, tabs or blanks
-//! between columns, and perhaps a head line with their names. Lines that begin with `#` are comments.
+//! between columns, and perhaps a head line with their names. TextLines that begin with `#` are comments.
 
 use super::cloud::{Cloud, linear_colors};
 use super::options::ParticleOptions;
-use super::scan::{Line, Lines, Word, fault};
+use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
@@ -158,12 +158,12 @@ pub(super) fn cloud(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
 
 /// A table whose columns have no names from so many on.
 fn table(bytes: &[u8], options: &ParticleOptions, unnamed: usize) -> ReadModel {
-    let mut lines = Lines::from(bytes, 0).filter(|line| !line.is_blank() && !line.text.starts_with(b"#"));
+    let mut lines = TextLines::from(bytes, 0).filter(|line| !line.is_blank() && !line.text.starts_with(b"#"));
     let Some(first) = lines.next() else {
         return Err(vec![Diagnostic::error(None, "the file has no lines")]);
     };
     let separator = Separator::of(first);
-    let head: Vec<Word<'_>> = separator.split(first).collect();
+    let head: Vec<TextWord<'_>> = separator.split(first).collect();
     let has_names = head.iter().any(|word| word.number().is_none());
     let mut warnings = Vec::new();
     let made = if has_names {
@@ -213,7 +213,7 @@ pub(super) fn left_out<'a>(names: impl Iterator<Item = &'a String>) -> Option<Di
 }
 
 fn read_row(
-    line: Line<'_>,
+    line: TextLine<'_>,
     separator: Separator,
     table: &PointTable,
     row: &mut [f64],
@@ -240,14 +240,14 @@ enum Separator {
 
 impl Separator {
     /// That of a line.
-    fn of(line: Line<'_>) -> Self {
+    fn of(line: TextLine<'_>) -> Self {
         let marks = [b';', b'\t', b','];
         let found = marks.into_iter().find(|mark| line.text.contains(mark));
         found.map_or(Self::Blanks, Self::Mark)
     }
 
     /// The columns of a line, without quotes.
-    fn split(self, line: Line<'_>) -> impl Iterator<Item = Word<'_>> {
+    fn split(self, line: TextLine<'_>) -> impl Iterator<Item = TextWord<'_>> {
         let mark = if let Self::Mark(mark) = self { Some(mark) } else { None };
         let mut words = line.words();
         let mut rest = Some(line.text);
@@ -256,11 +256,11 @@ impl Separator {
             let Some(mark) = mark else { return words.next() };
             let text = rest?;
             let length = text.iter().position(|&byte| byte == mark);
-            let word = Word { text: &text[..length.unwrap_or(text.len())], start }.trimmed();
+            let word = TextWord { text: &text[..length.unwrap_or(text.len())], start }.trimmed();
             rest = length.map(|length| &text[length + 1..]);
             start += length.map_or(text.len(), |length| length + 1);
             Some(match word.text {
-                [b'"', inner @ .., b'"'] => Word { text: inner, start: word.start + 1 },
+                [b'"', inner @ .., b'"'] => TextWord { text: inner, start: word.start + 1 },
                 _ => word,
             })
         })

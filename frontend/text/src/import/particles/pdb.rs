@@ -4,7 +4,7 @@
 use super::atoms::{Atom, Atoms};
 use super::elements::element;
 use super::options::ParticleOptions;
-use super::scan::{Line, Lines, fault};
+use super::scan::{TextLine, TextLines, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -23,7 +23,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let mut atoms = Atoms::with_bfac();
     let wanted = options.frame.unwrap_or(1).max(1);
     let (mut frame, mut has_models) = (1, false);
-    for line in Lines::from(bytes, 0) {
+    for line in TextLines::from(bytes, 0) {
         let record = line.columns(0, 6).text;
         match record {
             b"MODEL" => has_models = true,
@@ -41,7 +41,11 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     atoms.model(options)
 }
 
-fn read_atom(line: Line<'_>, atoms: &mut Atoms, options: &ParticleOptions) -> Result<(), Vec<Diagnostic>> {
+fn read_atom(
+    line: TextLine<'_>,
+    atoms: &mut Atoms,
+    options: &ParticleOptions,
+) -> Result<(), Vec<Diagnostic>> {
     let raw = |from: usize, to: usize| {
         let mut text = line.text.get(from..to.min(line.text.len())).unwrap_or_default().to_vec();
         text.resize(to - from, b' ');
@@ -73,7 +77,7 @@ fn read_atom(line: Line<'_>, atoms: &mut Atoms, options: &ParticleOptions) -> Re
 }
 
 /// The element: the one of its own columns, or by the name, whose second column is the last one of a symbol.
-fn element_of(line: Line<'_>) -> Option<usize> {
+fn element_of(line: TextLine<'_>) -> Option<usize> {
     if let Some(known) = element(line.columns(76, 78).text) {
         return Some(known);
     }

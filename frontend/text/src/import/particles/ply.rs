@@ -11,7 +11,7 @@
 use super::bytes::NumberType;
 use super::csv::{PointTable, left_out};
 use super::options::ParticleOptions;
-use super::scan::{Lines, Word, fault, fault_at};
+use super::scan::{TextLines, TextWord, fault, fault_at};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
@@ -24,21 +24,21 @@ fn is_mine(bytes: &[u8]) -> bool {
 }
 
 /// A property of an element.
-struct Property {
+struct PlyProperty {
     name: String,
     of: NumberType,
     /// The type of the count, if it is a list.
     list: Option<NumberType>,
 }
 
-struct Element {
+struct PlyElement {
     name: String,
     count: usize,
-    properties: Vec<Property>,
+    properties: Vec<PlyProperty>,
 }
 
 #[derive(Clone, Copy)]
-enum Coding {
+enum PlyCoding {
     Text,
     Binary { big_endian: bool },
 }
@@ -70,8 +70,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let skipped = names().enumerate().filter(|(place, _)| table.ignores(*place)).map(|it| it.1);
     let warning = if options.columns.is_empty() { left_out(skipped) } else { None };
     match coding {
-        Coding::Text => read_text(bytes, data, &elements[..=index], &mut table)?,
-        Coding::Binary { big_endian } => {
+        PlyCoding::Text => read_text(bytes, data, &elements[..=index], &mut table)?,
+        PlyCoding::Binary { big_endian } => {
             read_binary(bytes, (data, big_endian), &elements[..=index], &mut table)?;
         }
     }
@@ -80,43 +80,43 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     cloud.model(options)
 }
 
-fn header(bytes: &[u8]) -> Result<(Coding, Vec<Element>, usize), Vec<Diagnostic>> {
+fn header(bytes: &[u8]) -> Result<(PlyCoding, Vec<PlyElement>, usize), Vec<Diagnostic>> {
     if !is_mine(bytes) {
         return Err(fault_at(0, "this begins no polygon file", "`ply` and the end of a line"));
     }
-    let mut lines = Lines::from(bytes, 0);
+    let mut lines = TextLines::from(bytes, 0);
     lines.next();
-    let (mut coding, mut elements) = (None, Vec::<Element>::new());
+    let (mut coding, mut elements) = (None, Vec::<PlyElement>::new());
     while let Some(line) = lines.next() {
-        let words: Vec<Word<'_>> = line.words().take(6).collect();
+        let words: Vec<TextWord<'_>> = line.words().take(6).collect();
         let text: Vec<&[u8]> = words.iter().map(|word| word.text).collect();
         let wrong = |expected: &str| fault(line.span(), "a line of the head is not understood", expected);
         match text.as_slice() {
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", of, ..] => {
                 coding = Some(match *of {
-                    b"ascii" => Coding::Text,
-                    b"binary_little_endian" => Coding::Binary { big_endian: false },
-                    b"binary_big_endian" => Coding::Binary { big_endian: true },
+                    b"ascii" => PlyCoding::Text,
+                    b"binary_little_endian" => PlyCoding::Binary { big_endian: false },
+                    b"binary_big_endian" => PlyCoding::Binary { big_endian: true },
                     _ => return Err(wrong("ascii, binary_little_endian or binary_big_endian")),
                 });
             }
             [b"element", name, _] => {
                 let count = words[2].whole().ok_or_else(|| wrong("the number of elements"))?;
                 let name = String::from_utf8_lossy(name).into_owned();
-                elements.push(Element { name, count, properties: Vec::new() });
+                elements.push(PlyElement { name, count, properties: Vec::new() });
             }
             [b"property", b"list", count, of, name] => {
                 let types = number_type(count).zip(number_type(of));
                 let (count, of) = types.ok_or_else(|| wrong("types of numbers"))?;
                 let element = elements.last_mut().ok_or_else(|| wrong("an element first"))?;
                 let name = String::from_utf8_lossy(name).into_owned();
-                element.properties.push(Property { name, of, list: Some(count) });
+                element.properties.push(PlyProperty { name, of, list: Some(count) });
             }
             [b"property", of, name] => {
                 let of = number_type(of).ok_or_else(|| wrong("a type of numbers"))?;
                 let element = elements.last_mut().ok_or_else(|| wrong("an element first"))?;
-                element.properties.push(Property {
+                element.properties.push(PlyProperty {
                     name: String::from_utf8_lossy(name).into_owned(),
                     of,
                     list: None,
@@ -150,10 +150,10 @@ fn number_type(word: &[u8]) -> Option<NumberType> {
 fn read_text(
     bytes: &[u8],
     data: usize,
-    elements: &[Element],
+    elements: &[PlyElement],
     table: &mut PointTable,
 ) -> Result<(), Vec<Diagnostic>> {
-    let mut lines = Lines::from(bytes, data).filter(|line| !line.is_blank());
+    let mut lines = TextLines::from(bytes, data).filter(|line| !line.is_blank());
     let Some((vertex, before)) = elements.split_last() else { return Ok(()) };
     for element in before {
         lines.by_ref().take(element.count).for_each(drop);
@@ -184,7 +184,7 @@ fn cut_off(byte: usize, found: usize, count: usize) -> Vec<Diagnostic> {
 fn read_binary(
     bytes: &[u8],
     (data, big_endian): (usize, bool),
-    elements: &[Element],
+    elements: &[PlyElement],
     table: &mut PointTable,
 ) -> Result<(), Vec<Diagnostic>> {
     let mut at = data;

@@ -1,22 +1,22 @@
-//! Lines, words and numbers of texts that hold particles.
+//! TextLines, words and numbers of texts that hold particles.
 
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 /// A line, without its end.
 #[derive(Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(super) struct TextLine<'a> {
     pub(super) text: &'a [u8],
     /// The byte at which it begins.
     pub(super) start: usize,
 }
 
 /// The lines of a text from a byte on: they end with a line feed, a carriage return, or both.
-pub(super) struct Lines<'a> {
+pub(super) struct TextLines<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> TextLines<'a> {
     pub(super) fn from(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
     }
@@ -27,21 +27,21 @@ impl<'a> Lines<'a> {
     }
 }
 
-impl<'a> Iterator for Lines<'a> {
-    type Item = Line<'a>;
+impl<'a> Iterator for TextLines<'a> {
+    type Item = TextLine<'a>;
 
-    fn next(&mut self) -> Option<Line<'a>> {
+    fn next(&mut self) -> Option<TextLine<'a>> {
         let start = self.at;
         let rest = self.bytes.get(start..).filter(|rest| !rest.is_empty())?;
         let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
         let length = end.unwrap_or(rest.len());
         let is_pair = rest[length..].starts_with(b"\r\n");
         self.at = start + length + if is_pair { 2 } else { usize::from(end.is_some()) };
-        Some(Line { text: &rest[..length], start })
+        Some(TextLine { text: &rest[..length], start })
     }
 }
 
-impl<'a> Line<'a> {
+impl<'a> TextLine<'a> {
     /// Where it stands.
     pub(super) fn span(self) -> Span {
         Span::new(self.start, self.start + self.text.len())
@@ -53,13 +53,13 @@ impl<'a> Line<'a> {
     }
 
     /// Its words, with blanks between.
-    pub(super) fn words(self) -> impl Iterator<Item = Word<'a>> {
+    pub(super) fn words(self) -> impl Iterator<Item = TextWord<'a>> {
         let is_blank = |byte: &u8| byte.is_ascii_whitespace();
         let mut at = 0;
         std::iter::from_fn(move || {
             at += self.text[at..].iter().position(|byte| !is_blank(byte))?;
             let length = self.text[at..].iter().position(is_blank).unwrap_or(self.text.len() - at);
-            let word = Word { text: &self.text[at..][..length], start: self.start + at };
+            let word = TextWord { text: &self.text[at..][..length], start: self.start + at };
             at += length;
             Some(word)
         })
@@ -67,22 +67,22 @@ impl<'a> Line<'a> {
 
     /// The columns from one to before another, counted from 0, without blanks around: fewer where it is
     /// short.
-    pub(super) fn columns(self, from: usize, to: usize) -> Word<'a> {
+    pub(super) fn columns(self, from: usize, to: usize) -> TextWord<'a> {
         let end = to.min(self.text.len());
         let from = from.min(end);
-        Word { text: &self.text[from..end], start: self.start + from }.trimmed()
+        TextWord { text: &self.text[from..end], start: self.start + from }.trimmed()
     }
 }
 
 /// A part of a text.
 #[derive(Clone, Copy)]
-pub(super) struct Word<'a> {
+pub(super) struct TextWord<'a> {
     pub(super) text: &'a [u8],
     /// The byte at which it begins.
     pub(super) start: usize,
 }
 
-impl<'a> Word<'a> {
+impl<'a> TextWord<'a> {
     /// Where it stands.
     pub(super) fn span(self) -> Span {
         Span::new(self.start, self.start + self.text.len())
@@ -138,13 +138,13 @@ mod tests {
     #[test]
     fn lines_end_in_all_ways() {
         let lines: Vec<(usize, &[u8])> =
-            Lines::from(b"a\nb\r\n\rc", 0).map(|line| (line.start, line.text)).collect();
+            TextLines::from(b"a\nb\r\n\rc", 0).map(|line| (line.start, line.text)).collect();
         assert_eq!(lines, [(0, &b"a"[..]), (2, b"b"), (5, b""), (6, b"c")]);
     }
 
     #[test]
     fn numbers_may_have_the_exponents_of_fortran() {
-        let number = |text: &str| Word { text: text.as_bytes(), start: 0 }.number();
+        let number = |text: &str| TextWord { text: text.as_bytes(), start: 0 }.number();
         assert_eq!(
             [number("1.5D+01"), number("-2d0"), number("3e1"), number(".5")],
             [15.0, -2.0, 30.0, 0.5].map(Some)
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn columns_of_a_short_line_are_empty() {
-        let line = Line { text: b" ab  c", start: 10 };
+        let line = TextLine { text: b" ab  c", start: 10 };
         let word = line.columns(0, 4);
         assert_eq!((word.text, word.start), (&b"ab"[..], 11));
         assert_eq!(line.columns(5, 99).text, b"c");

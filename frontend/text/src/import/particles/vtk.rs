@@ -15,7 +15,7 @@
 use super::bytes::NumberType;
 use super::cloud::Cloud;
 use super::options::ParticleOptions;
-use super::scan::{Line, Lines, Word, fault, fault_at};
+use super::scan::{TextLine, TextLines, TextWord, fault, fault_at};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
@@ -38,7 +38,7 @@ struct LegacyFile<'a> {
 }
 
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
-    let mut lines = Lines::from(bytes, 0);
+    let mut lines = TextLines::from(bytes, 0);
     let first = lines.next().filter(|line| is_mine(line.text));
     if first.is_none() {
         return Err(fault_at(0, "this begins no VTK file", "`# vtk DataFile Version`"));
@@ -49,8 +49,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
         Some(b"ASCII") => false,
         Some(b"BINARY") => true,
         _ => {
-            let span =
-                coding.map_or_else(|| jbt_model::diagnostic::Span::new(bytes.len(), bytes.len()), Line::span);
+            let span = coding
+                .map_or_else(|| jbt_model::diagnostic::Span::new(bytes.len(), bytes.len()), TextLine::span);
             return Err(fault(span, "the coding is not known", "ASCII or BINARY"));
         }
     };
@@ -65,8 +65,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
 
 impl<'a> LegacyFile<'a> {
     /// The next line that is not blank.
-    fn line(&mut self) -> Option<Line<'a>> {
-        let mut lines = Lines::from(self.bytes, self.at);
+    fn line(&mut self) -> Option<TextLine<'a>> {
+        let mut lines = TextLines::from(self.bytes, self.at);
         let line = lines.find(|line| !line.is_blank());
         self.at = lines.at();
         line
@@ -75,7 +75,7 @@ impl<'a> LegacyFile<'a> {
     /// The points, and how many there are.
     fn points(&mut self) -> Result<(usize, NumberArray), Vec<Diagnostic>> {
         while let Some(line) = self.line() {
-            let words: Vec<Word<'_>> = line.words().take(4).collect();
+            let words: Vec<TextWord<'_>> = line.words().take(4).collect();
             let Some(keyword) = words.first() else { continue };
             match keyword.text {
                 b"DATASET" => {
@@ -116,7 +116,7 @@ impl<'a> LegacyFile<'a> {
         }
         // No number takes less than a byte and a blank.
         let mut numbers = Vec::with_capacity(count.min(self.bytes.len() / 2 + 1));
-        let mut lines = Lines::from(self.bytes, self.at);
+        let mut lines = TextLines::from(self.bytes, self.at);
         while numbers.len() < count {
             let Some(line) = lines.next() else { return Err(cut_off(numbers.len())) };
             for word in line.words() {
@@ -140,7 +140,7 @@ impl<'a> LegacyFile<'a> {
         // Arrays of cells come before or behind those of points.
         let mut of_points = false;
         while let Some(line) = self.line() {
-            let words: Vec<Word<'_>> = line.words().take(4).collect();
+            let words: Vec<TextWord<'_>> = line.words().take(4).collect();
             let whole = |place: usize| words.get(place).and_then(|word| word.whole());
             let name = || words.get(1).map_or_else(String::new, |word| word.shown());
             match words.first().map_or(&b""[..], |word| word.text) {
@@ -162,7 +162,7 @@ impl<'a> LegacyFile<'a> {
                 b"FIELD" => {
                     for _ in 0..whole(2).unwrap_or(0) {
                         let Some(line) = self.line() else { break };
-                        let words: Vec<Word<'_>> = line.words().take(4).collect();
+                        let words: Vec<TextWord<'_>> = line.words().take(4).collect();
                         let whole = |place: usize| words.get(place).and_then(|word| word.whole());
                         let of = words.get(3).and_then(|word| number_type(word.text));
                         let (Some(width), Some(tuples), Some(of)) = (whole(1), whole(2), of) else {

@@ -1,5 +1,5 @@
-//! `.vtu`: the points of an XML file of VTK. Arrays are text, or bytes in base64 or behind all tags, compressed
-//! by zlib or not.
+//! `.vtu`: the points of an XML file of VTK. Arrays are text, or bytes in base64 or behind all tags,
+//! compressed by zlib (feature `zlib`) or not.
 //!
 //! ```text
 //! <VTKFile type="UnstructuredGrid" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">
@@ -14,7 +14,7 @@
 use super::bytes::NumberType;
 use super::cloud::Cloud;
 use super::options::ParticleOptions;
-use super::scan::{Lines, fault_at};
+use super::scan::{TextLines, fault_at};
 use super::vtk::missing;
 use super::xml::{Tag, Tags};
 use crate::import::format::SceneFormatRow;
@@ -30,7 +30,7 @@ fn is_mine(bytes: &[u8]) -> bool {
 }
 
 /// How all arrays of a file are coded.
-struct Coding<'a> {
+struct ArrayCoding<'a> {
     bytes: &'a [u8],
     big_endian: bool,
     /// The type of the numbers in front of an array.
@@ -47,23 +47,23 @@ const MAX_UNPACKED: usize = 1 << 33;
 
 /// Where the walk over tags is.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum VtuPlace {
     Elsewhere,
     Points,
     PointData,
 }
 
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
-    let mut coding = Coding::of(bytes)?;
-    let mut place = Place::Elsewhere;
+    let mut coding = ArrayCoding::of(bytes)?;
+    let mut place = VtuPlace::Elsewhere;
     let (mut positions, mut values): (Vec<f64>, Vec<(String, usize, Vec<f64>)>) = (Vec::new(), Vec::new());
     for tag in (Tags { bytes, at: 0 }).take_while(|tag| tag.name != b"AppendedData") {
         match tag.name {
-            b"Points" => place = if tag.closes { Place::Elsewhere } else { Place::Points },
+            b"Points" => place = if tag.closes { VtuPlace::Elsewhere } else { VtuPlace::Points },
             b"PointData" if !tag.is_empty => {
-                place = if tag.closes { Place::Elsewhere } else { Place::PointData }
+                place = if tag.closes { VtuPlace::Elsewhere } else { VtuPlace::PointData }
             }
-            b"DataArray" if !tag.closes && place == Place::Points => {
+            b"DataArray" if !tag.closes && place == VtuPlace::Points => {
                 let numbers = coding.numbers(&tag)?;
                 if numbers.len() % 3 != 0 {
                     let message = format!("{} numbers of points", numbers.len());
@@ -71,7 +71,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
                 }
                 positions.extend(numbers);
             }
-            b"DataArray" if !tag.closes && place == Place::PointData => {
+            b"DataArray" if !tag.closes && place == VtuPlace::PointData => {
                 let Some(name) = tag.attribute("Name").filter(|name| options.values.contains(name)) else {
                     continue;
                 };
@@ -91,7 +91,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     cloud.model(options)
 }
 
-impl<'a> Coding<'a> {
+impl<'a> ArrayCoding<'a> {
     fn of(bytes: &'a [u8]) -> Result<Self, Vec<Diagnostic>> {
         let mut tags = Tags { bytes, at: 0 };
         let Some(file) = tags.find(|tag| tag.name == b"VTKFile") else {
@@ -104,7 +104,7 @@ impl<'a> Coding<'a> {
         }
         let compressed = match file.attribute("compressor").as_deref() {
             None | Some("") => false,
-            Some("vtkZLibDataCompressor") => true,
+            Some("vtkZLibDataCompressor") if cfg!(feature = "zlib") => true,
             Some(other) => {
                 let other = jbt_model::report::clip(other);
                 return wrong(&format!("arrays compressed by {other}"), "vtkZLibDataCompressor, or none");
@@ -133,7 +133,7 @@ impl<'a> Coding<'a> {
         let data = match tag.attribute("format").as_deref() {
             None | Some("ascii") => {
                 let mut numbers = Vec::new();
-                for line in Lines::from(&self.bytes[..tag.end + inner.len()], tag.end) {
+                for line in TextLines::from(&self.bytes[..tag.end + inner.len()], tag.end) {
                     for word in line.words() {
                         numbers.push(word.expect_number("a number")?);
                     }
@@ -200,7 +200,7 @@ impl<'a> Coding<'a> {
                 vec![Diagnostic::limit(None, format!("arrays of more than {} GiB", MAX_UNPACKED >> 30))]
             })?;
             let part = &packed[at..at + size];
-            let made = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(part, most).map_err(|_| {
+            let made = inflate(part, most).ok_or_else(|| {
                 fault_at(tag.start, "the array does not unpack", "blocks of zlib of the size that it says")
             })?;
             unpacked.extend(made);
@@ -208,6 +208,14 @@ impl<'a> Coding<'a> {
         }
         Ok(unpacked)
     }
+}
+
+/// The bytes that zlib has compressed, if they are at most so many.
+fn inflate(packed: &[u8], most: usize) -> Option<Vec<u8>> {
+    #[cfg(feature = "zlib")]
+    return miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, most).ok();
+    #[cfg(not(feature = "zlib"))]
+    unreachable!("{} bytes of at most {most} are not asked for", packed.len())
 }
 
 /// The bytes of a text in base64, whole groups of four letters.

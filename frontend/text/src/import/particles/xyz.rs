@@ -1,4 +1,5 @@
-//! `.xyz`: atoms as chemists write them, clouds of points, and raw numbers of simulators. The content decides.
+//! `.xyz`: atoms as chemists write them, clouds of points, and raw numbers of simulators. The content
+//! decides.
 //!
 //! ```text
 //! 3                           C 0 0 0 ..                   a number, a line of any text, then symbol x y z [more] as often
@@ -14,7 +15,7 @@ use super::cloud::Cloud;
 use super::csv;
 use super::elements::{ELEMENTS, element};
 use super::options::ParticleOptions;
-use super::scan::{Line, Lines, Word, fault};
+use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -33,8 +34,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     if !is_text {
         return raw(bytes, options);
     }
-    let first = Lines::from(bytes, 0).next();
-    let mut words = first.into_iter().flat_map(Line::words);
+    let first = TextLines::from(bytes, 0).next();
+    let mut words = first.into_iter().flat_map(TextLine::words);
     match (words.next(), words.next()) {
         (Some(count), None) if count.whole().is_some() => chemistry(bytes, options),
         _ => csv::cloud(bytes, options),
@@ -53,7 +54,7 @@ fn raw(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
 /// Frames of atoms, of which one is read.
 fn chemistry(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let wanted = options.frame.unwrap_or(1).max(1);
-    let mut lines = Lines::from(bytes, 0);
+    let mut lines = TextLines::from(bytes, 0);
     for frame in 1.. {
         let Some(head) = next_frame(&mut lines) else {
             let message = format!("the file has {} frames, and not {wanted}", frame - 1);
@@ -63,7 +64,7 @@ fn chemistry(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             return Err(fault(head.span(), "this begins no frame", "the number of its atoms"));
         };
         let comment = lines.next();
-        let end = |lines: &Lines<'_>| Span::new(lines.at().min(bytes.len()), bytes.len().min(lines.at()));
+        let end = |lines: &TextLines<'_>| Span::new(lines.at().min(bytes.len()), bytes.len().min(lines.at()));
         if frame < wanted {
             let skipped = lines.by_ref().take(count).count();
             if skipped < count {
@@ -71,7 +72,7 @@ fn chemistry(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             }
             continue;
         }
-        let columns = comment.map_or(Columns::PLAIN, Columns::of);
+        let columns = comment.map_or(XyzColumns::PLAIN, XyzColumns::of);
         let mut atoms = Atoms::default();
         for number in 0..count {
             let Some(line) = lines.next().filter(|line| !line.is_blank()) else {
@@ -88,7 +89,7 @@ fn chemistry(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
 }
 
 /// The head of the next frame: blank lines may stand before it.
-fn next_frame<'a>(lines: &mut Lines<'a>) -> Option<Line<'a>> {
+fn next_frame<'a>(lines: &mut TextLines<'a>) -> Option<TextLine<'a>> {
     lines.find(|line| !line.is_blank())
 }
 
@@ -98,16 +99,16 @@ fn too_few(span: Span, count: usize, found: usize) -> Vec<Diagnostic> {
 
 /// Where symbol and place stand in a line.
 #[derive(Clone, Copy)]
-struct Columns {
+struct XyzColumns {
     symbol: usize,
     place: usize,
 }
 
-impl Columns {
+impl XyzColumns {
     const PLAIN: Self = Self { symbol: 0, place: 1 };
 
     /// Those that an extended file tells in its second line: `Properties=species:S:1:pos:R:3:..`.
-    fn of(comment: Line<'_>) -> Self {
+    fn of(comment: TextLine<'_>) -> Self {
         let text = String::from_utf8_lossy(comment.text);
         let Some((_, rest)) = text.split_once("Properties=") else { return Self::PLAIN };
         let list = rest.trim_start_matches('"');
@@ -126,8 +127,8 @@ impl Columns {
     }
 }
 
-fn atom(line: Line<'_>, columns: Columns) -> Result<Atom, Vec<Diagnostic>> {
-    let words: Vec<Word<'_>> =
+fn atom(line: TextLine<'_>, columns: XyzColumns) -> Result<Atom, Vec<Diagnostic>> {
+    let words: Vec<TextWord<'_>> =
         line.words().take(columns.place.max(columns.symbol).saturating_add(3)).collect();
     let word = |index: usize, what: &str| {
         words.get(index).ok_or_else(|| fault(line.span(), "an atom ends too early", what))
