@@ -1,5 +1,6 @@
-//! `.csv`, and other tables of numbers as text: a line for each point, with commas, semicolons, tabs or blanks
-//! between columns, and perhaps a head line with their names. TextLines that begin with `#` are comments.
+//! `.csv`, and other tables of numbers as text: a line for each point, with commas, semicolons, tabs or
+//! blanks between columns, and perhaps a head line with their names. Lines that begin with `#` are
+//! comments.
 
 use super::cloud::{Cloud, linear_colors};
 use super::options::ParticleOptions;
