@@ -86,7 +86,7 @@ fn form(text: &str) -> Result<ParticleForm, String> {
     }
 }
 
-fn definition(text: &str) -> Result<(String, f64), String> {
+pub fn definition(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     let name = name.trim();
     if name.is_empty() {

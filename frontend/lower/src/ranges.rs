@@ -72,7 +72,7 @@ fn table_info(
     }
     TablePruneInfo {
         space,
-        supports: found,
+        supports: found.into(),
         rule,
         nodes,
         is_hoisted: members.iter().any(|member| matches!(member, Member::Hoisted(_))),

@@ -34,7 +34,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
-use super::instance::{FieldId, InstanceId, InstanceKind, LeafField, PositionId, Scene};
+use super::instance::{FieldId, InstanceId, InstanceKind, PositionId, Scene};
 use super::position::{MapKind, Position};
 use super::prune_info::{LARGEST_COORDINATE, Support};
 use super::rows::ROWS_AT_ONCE;
@@ -49,6 +49,8 @@ use jbt_model::skeleton::{Metric, ROUNDING, Skeleton};
 
 /// Half a unit in the last place of 1 in f32.
 const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// What a coordinate is off by, relative to the numbers that it is made of.
+const UNITS: f64 = 6.0 * HALF_UNIT;
 /// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are
 /// added.
 const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
@@ -104,8 +106,9 @@ impl<'a> Supports<'a> {
             }
             let (field, skeleton) = (scene.field(id), &scene.primitive(id).skeleton);
             let numbers = scene.leaf_numbers(id, 0);
+            let facts = LinearFacts::new(field.code.map, &field.map);
             let space = sizes[scene.position(field.position).space.0 as usize];
-            let leaf = Leaf::new((skeleton, numbers), (field.map, field), space);
+            let leaf = Leaf::new((skeleton, numbers), (field.map, field.scale, &facts), space);
             if field.code.skeleton.pieces().is_some_and(|pieces| pieces.local) {
                 pieces.insert(id, leaf.pieces());
             }
@@ -301,19 +304,55 @@ struct Inverse {
 
 impl Inverse {
     fn new(kind: MapKind, map: &DAffine3) -> Self {
-        let back = kind.inverse(map);
-        if kind == MapKind::Identity {
-            return Self { back, relative: DMat3::ZERO, fixed: DVec3::ZERO };
-        }
-        let rows = absolute(back.matrix3);
-        let units = 6.0 * HALF_UNIT;
-        let residual = back.matrix3 * map.matrix3 - DMat3::IDENTITY;
-        let shift = back.matrix3 * map.translation + back.translation;
-        let size = rows * map.translation.abs() + back.translation.abs();
-        Self {
-            back,
-            relative: units * (rows * absolute(map.matrix3)) + absolute(residual),
-            fixed: units * size + shift.abs() + 2f64.powi(-86),
+        LinearFacts::new(kind, map).inverse(map)
+    }
+}
+
+/// What follows from the linear part of a map alone: found once for all particles of a node.
+struct LinearFacts {
+    kind: MapKind,
+    back: DMat3,
+    /// The magnitudes of the inverse.
+    rows: DMat3,
+    relative: DMat3,
+    /// The largest length of a row of the map.
+    longest: f64,
+    /// Whether it leaves distances alone.
+    rigid: bool,
+}
+
+impl LinearFacts {
+    fn new(kind: MapKind, map: &DAffine3) -> Self {
+        let back = kind.inverse(map).matrix3;
+        let rows = absolute(back);
+        let residual = back * map.matrix3 - DMat3::IDENTITY;
+        let relative = match kind {
+            MapKind::Identity => DMat3::ZERO,
+            MapKind::Translation | MapKind::Scaling | MapKind::Full => {
+                UNITS * (rows * absolute(map.matrix3)) + absolute(residual)
+            }
+        };
+        let lengths = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
+        let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
+        Self { kind, back, rows, relative, longest: lengths.max_element(), rigid }
+    }
+
+    /// The inverse of a map with this linear part.
+    fn inverse(&self, map: &DAffine3) -> Inverse {
+        let translation = match self.kind {
+            MapKind::Identity => {
+                return Inverse { back: DAffine3::IDENTITY, relative: self.relative, fixed: DVec3::ZERO };
+            }
+            MapKind::Translation => -map.translation,
+            MapKind::Scaling => map.translation * -self.back.x_axis.x,
+            MapKind::Full => -(self.back * map.translation),
+        };
+        let shift = self.back * map.translation + translation;
+        let size = self.rows * map.translation.abs() + translation.abs();
+        Inverse {
+            back: DAffine3 { matrix3: self.back, translation },
+            relative: self.relative,
+            fixed: UNITS * size + shift.abs() + 2f64.powi(-86),
         }
     }
 }
@@ -331,6 +370,8 @@ fn supports_of_run(
 ) -> (Vec<Support>, Extent) {
     let field = scene.field(id);
     let particles = scene.particles(field.node);
+    let facts = LinearFacts::new(field.code.map, &field.map);
+    let space = sizes[scene.position(field.position).space.0 as usize];
     let mut supports = vec![Support::EVERYWHERE; run.len()];
     let nothing = Extent { support: Bounds::EMPTY, negative: Bounds::EMPTY };
     let parts = in_parts(workers, &mut supports, ROWS_AT_ONCE, |first, part| {
@@ -340,8 +381,7 @@ fn supports_of_run(
             let skeleton = particles.point(place).into();
             let map = scene.leaf_map(field, place);
             let numbers = scene.leaf_numbers(id, place);
-            let space = sizes[scene.position(field.position).space.0 as usize];
-            let rounded = Leaf::new((&skeleton, numbers), (map, field), space).whole();
+            let rounded = Leaf::new((&skeleton, numbers), (map, field.scale, &facts), space).whole();
             *support = Support::around(rounded.core, rounded.radius);
             extent.support = extent.support.hull(rounded.bounds());
             if numbers.strength < 0.0 {
@@ -377,18 +417,23 @@ enum Reach {
 }
 
 impl<'a> Leaf<'a> {
-    /// A skeleton with its numbers, under the map from its pose, as the code of a field has it, in a space of
-    /// these sizes.
+    /// A skeleton with its numbers, under the map from its pose, in which it is so many times as large, in a
+    /// space of these sizes.
     fn new(
         (skeleton, numbers): (&'a Skeleton, LeafNumbers<'_>),
-        (map, field): (DAffine3, &LeafField),
+        (map, scale, facts): (DAffine3, f64, &LinearFacts),
         sizes: Sizes,
     ) -> Self {
         let map = &map;
-        let radius = field.scale * numbers.radius;
+        let radius = scale * numbers.radius;
         let slope = radius.powi(-2);
-        let inverse = Inverse::new(field.code.map, map);
-        let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
+        let inverse = facts.inverse(map);
+        let unposed = match skeleton {
+            // Without an inverse, because there are many of them.
+            Skeleton::Point(point) => DAffine3::from_translation(-point.at),
+            posed => posed.pose().inverse(),
+        };
+        let to_pose = DAffine3::from_scale(DVec3::splat(scale)) * unposed;
         let pose = skeleton.bounds_under(&to_pose);
         let size = pose.min.abs().max(pose.max.abs());
         let whole = *map * to_pose;
@@ -422,14 +467,11 @@ impl<'a> Leaf<'a> {
         let reach = (radius * (1.0 + 4.0 * HALF_UNIT) + lost) / (1.0 - part);
 
         let own = skeleton.bounds();
-        let own = field.scale * own.min.abs().max(own.max.abs()).max_element();
-        let rows = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
+        let own = scale * own.min.abs().max(own.max.abs()).max_element();
         let slack = F64_SLACK
-            * (2.0 * rows.max_element() * (own + reach * metric.half().max_element())
+            * (2.0 * facts.longest * (own + reach * metric.half().max_element())
                 + map.translation.abs().max_element());
-        // A rigid map leaves distances alone.
-        let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
-        let reach = if rigid && metric == Metric::EUCLIDEAN {
+        let reach = if facts.rigid && metric == Metric::EUCLIDEAN {
             Reach::Round(slack, reach * (1.0 + 1e-10))
         } else {
             Reach::Axes(slack + reach * metric.reach(map.matrix3))

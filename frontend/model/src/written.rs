@@ -38,6 +38,7 @@ pub use falloff::WrittenFalloff;
 pub use field::FieldNumber;
 pub use field::as_written;
 pub use particles::{ParticleRadius, WrittenParticles};
+pub use points::WrittenPoint;
 use surface::support_radius;
 
 /// The radius of a primitive.

@@ -81,8 +81,7 @@ impl Parser<'_> {
         let named = if word == GROUP_NODE { self.peek_word().map(|name| (self.next(), name)) } else { None };
         let (at, name) = named.unwrap_or((token, word));
         let is_field = named.is_none() && (word == AT || COMMON_FIELDS.contains(&word));
-        let groups = self.attributes.iter().filter(|group| !is_field && &*group.name == name);
-        let group = groups.cloned().next();
+        let group = self.attributes.iter().find(|group| !is_field && &*group.name == name).cloned();
         if !is_field && group.is_none() {
             if !self.is_muted() {
                 self.unknown_particle_field(at, name);

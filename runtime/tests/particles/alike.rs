@@ -90,7 +90,7 @@ fn answers_are_those_of_points_by_every_engine_pruned_or_not() {
             let expected = answers(&expected, &points);
             let found = answers(&evaluator, &points);
             let what = format!("{name}, {engine:?}");
-            assert_same(&expected.planes(), &found.planes(), &what);
+            assert_same(expected.planes(), found.planes(), &what);
             let pruner = Pruner::new(&Compiler::for_engine(engine), &cloud).unwrap();
             for index in 0..points.len() {
                 let at = points.get(index);
@@ -114,7 +114,7 @@ fn the_oracle_says_of_particles_what_it_says_of_points() {
             Solid::new(&Compiler::new(), &cloud).unwrap(),
             Solid::new(&Compiler::new(), &written_out).unwrap(),
         );
-        for point in points(&cloud, 100).iter() {
+        for point in &points(&cloud, 100) {
             let at = std::array::from_fn(|axis| f64::from(point[axis]) + origin.point()[axis]);
             assert_eq!(walk(&cloud, at), walk(&written_out, at), "{name} {at:?}");
             let owners = [solid.owner(at), twin.owner(at)];

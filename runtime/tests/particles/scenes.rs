@@ -92,7 +92,7 @@ pub fn scenes() -> Vec<(&'static str, Tree)> {
         ),
         ("shared", {
             let pair = cloud(19, 8);
-            &pair + &pair.translate([0.5, 0.0, 0.0]) | pair.scale(0.5)
+            (&pair + &pair.translate([0.5, 0.0, 0.0])) | pair.scale(0.5)
         }),
         ("in a formula", Tree::expression(cloud(20, 9).field() * (1.0 + 0.2 * (5 * x()).sin()))),
     ]

@@ -171,7 +171,7 @@ impl WrittenParticles {
     fn check_lengths(&self) -> Result<(), Fault> {
         let count = self.len();
         let fault = |message: String, help| Err(Fault { message, help: Some(help) });
-        if self.positions.len() % 3 != 0 {
+        if !self.positions.len().is_multiple_of(3) {
             return fault(
                 format!("the positions of particles are {} numbers", self.positions.len()),
                 "expected three for each particle",

@@ -8,11 +8,14 @@ use crate::number::Number;
 use crate::particles::{ParticleValues, PerParticle};
 use crate::skeleton::SkeletonKind;
 
+/// A point, and the attributes that it has of its own.
+pub type WrittenPoint = (Written, Vec<(Arc<str>, WrittenAttribute)>);
+
 impl WrittenParticles {
     /// The points whose sum they mean, as nodes of their own, each with the attributes that it has. Panics if
     /// arrays have other lengths than they should.
     #[must_use]
-    pub fn points(&self) -> Vec<(Written, Vec<(Arc<str>, WrittenAttribute)>)> {
+    pub fn points(&self) -> Vec<WrittenPoint> {
         let number = |numbers: &PerParticle<Number>, particle: usize| match numbers {
             PerParticle::All(number) => number.clone(),
             PerParticle::Each(numbers) => numbers.at(particle).into(),

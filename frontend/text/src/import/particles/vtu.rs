@@ -56,7 +56,8 @@ enum VtuPlace {
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let mut coding = ArrayCoding::of(bytes)?;
     let mut place = VtuPlace::Elsewhere;
-    let (mut positions, mut values): (Vec<f64>, Vec<(String, usize, Vec<f64>)>) = (Vec::new(), Vec::new());
+    let mut positions: Vec<f64> = Vec::new();
+    let mut values: Vec<(String, usize, Vec<f64>)> = Vec::new();
     for tag in (Tags { bytes, at: 0 }).take_while(|tag| tag.name != b"AppendedData") {
         match tag.name {
             b"Points" => place = if tag.closes { VtuPlace::Elsewhere } else { VtuPlace::Points },

@@ -44,7 +44,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
 
 /// Triples of f32.
 fn raw(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
-    if bytes.len() % 12 != 0 {
+    if !bytes.len().is_multiple_of(12) {
         let message = format!("{} bytes, which are neither text nor points of 12 bytes each", bytes.len());
         return Err(vec![Diagnostic::error(None, message)]);
     }
