@@ -31,26 +31,25 @@
 //! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are
 //! asked, [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
 
-use glam::{DAffine3, DMat3, DVec3};
+mod inverse;
+
+use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
+use self::inverse::{HALF_UNIT, Inverse, LinearFacts, absolute};
 use super::instance::{FieldId, InstanceId, InstanceKind, PositionId, Scene};
 use super::position::{MapKind, Position};
 use super::prune_info::{LARGEST_COORDINATE, Support};
 use super::rows::ROWS_AT_ONCE;
 use super::run::{LeafNumbers, PointRun};
 use super::workers::{Workers, in_parts};
-use jbt_model::affine::{Similarity, map_bounds};
+use jbt_model::affine::map_bounds;
 use jbt_model::bounds::Bounds;
 use jbt_model::check::NodeId;
 use jbt_model::combine::ReduceCode;
 use jbt_model::combine::extent::Extent;
 use jbt_model::skeleton::{Metric, ROUNDING, Skeleton};
 
-/// Half a unit in the last place of 1 in f32.
-const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
-/// What a coordinate is off by, relative to the numbers that it is made of.
-const UNITS: f64 = 6.0 * HALF_UNIT;
 /// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are
 /// added.
 const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
@@ -292,73 +291,6 @@ impl Sizes {
             derivatives: 2.0 * self.derivatives * sums.max_element(),
         }
     }
-}
-
-/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| +
-/// fixed`.
-struct Inverse {
-    back: DAffine3,
-    relative: DMat3,
-    fixed: DVec3,
-}
-
-impl Inverse {
-    fn new(kind: MapKind, map: &DAffine3) -> Self {
-        LinearFacts::new(kind, map).inverse(map)
-    }
-}
-
-/// What follows from the linear part of a map alone: found once for all particles of a node.
-struct LinearFacts {
-    kind: MapKind,
-    back: DMat3,
-    /// The magnitudes of the inverse.
-    rows: DMat3,
-    relative: DMat3,
-    /// The largest length of a row of the map.
-    longest: f64,
-    /// Whether it leaves distances alone.
-    rigid: bool,
-}
-
-impl LinearFacts {
-    fn new(kind: MapKind, map: &DAffine3) -> Self {
-        let back = kind.inverse(map).matrix3;
-        let rows = absolute(back);
-        let residual = back * map.matrix3 - DMat3::IDENTITY;
-        let relative = match kind {
-            MapKind::Identity => DMat3::ZERO,
-            MapKind::Translation | MapKind::Scaling | MapKind::Full => {
-                UNITS * (rows * absolute(map.matrix3)) + absolute(residual)
-            }
-        };
-        let lengths = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
-        let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
-        Self { kind, back, rows, relative, longest: lengths.max_element(), rigid }
-    }
-
-    /// The inverse of a map with this linear part.
-    fn inverse(&self, map: &DAffine3) -> Inverse {
-        let translation = match self.kind {
-            MapKind::Identity => {
-                return Inverse { back: DAffine3::IDENTITY, relative: self.relative, fixed: DVec3::ZERO };
-            }
-            MapKind::Translation => -map.translation,
-            MapKind::Scaling => map.translation * -self.back.x_axis.x,
-            MapKind::Full => -(self.back * map.translation),
-        };
-        let shift = self.back * map.translation + translation;
-        let size = self.rows * map.translation.abs() + translation.abs();
-        Inverse {
-            back: DAffine3 { matrix3: self.back, translation },
-            relative: self.relative,
-            fixed: UNITS * size + shift.abs() + 2f64.powi(-86),
-        }
-    }
-}
-
-fn absolute(matrix: DMat3) -> DMat3 {
-    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
 }
 
 /// The supports of a run's particles, and where all of them are.

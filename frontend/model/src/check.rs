@@ -110,6 +110,7 @@ impl Model {
             parameters,
             dependence,
             origin,
+            orientation: self.orientation,
             source,
             lineage: None,
         };

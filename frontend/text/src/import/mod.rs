@@ -8,11 +8,19 @@ mod imported;
 mod jbt;
 mod parsip;
 pub mod particles;
+mod pov;
+mod rib;
+mod srgb;
+mod tally;
+mod threejs;
 mod vm;
 
 pub use format::SceneFormat;
 pub use imported::Imported;
 pub use parsip::parsip;
+pub use pov::pov;
+pub use rib::rib;
+pub use threejs::threejs;
 pub use vm::vm;
 
 use particles::{cif, csv, npy, pdb, ply, vtk, vtu, xyz};

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::cloud::{Cloud, linear};
+use super::cloud::Cloud;
 use super::elements::{ELEMENTS, ElementFacts};
 use super::options::ParticleOptions;
 use crate::import::imported::ReadModel;
+use crate::import::srgb::decoded;
 use jbt_model::diagnostic::Diagnostic;
 
 /// Residues that are water.
@@ -99,7 +100,7 @@ impl Atoms {
             " left out: the likeliest ones stay",
         );
         note(self.unknown, "atom is", "atoms are", " of no known element: radius 2, pink");
-        let colors = |facts: &ElementFacts| facts.color.map(|byte| linear(f64::from(byte) / 255.0) as f32);
+        let colors = |facts: &ElementFacts| facts.color.map(|byte| decoded(f64::from(byte) / 255.0) as f32);
         let known: Vec<[f32; 3]> = ELEMENTS.iter().map(colors).collect();
         let unknown = colors(&ElementFacts::UNKNOWN);
         let color = |atom: &Atom| atom.element.map_or(unknown, |element| known[element]);

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::options::{ParticleForm, ParticleOptions};
 use crate::import::imported::ReadModel;
+use crate::import::srgb::decoded;
 use jbt_model::attribute::{AttributeGroup, Mixing};
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::falloff::{Blinn, Edge};
@@ -161,20 +162,15 @@ fn identifier(name: &str) -> String {
     if first && !is_taken { made } else { format!("a_{made}") }
 }
 
-/// From a number that a screen is given to linear light, both from 0 to 1 (IEC 61966-2-1).
-pub(super) fn linear(screen: f64) -> f64 {
-    if screen <= 0.040_45 { screen / 12.92 } else { ((screen + 0.055) / 1.055).powf(2.4) }
-}
-
 /// Linear colours of those that a screen is given: of bytes, if any number is above 1.
 pub(super) fn linear_colors(mut screen: Vec<f32>, are_bytes: bool) -> NumberArray {
     let scale = if are_bytes || screen.iter().any(|&number| number > 1.0) { 255.0 } else { 1.0 };
     // Bytes are most of them.
-    let table: Vec<f32> = (0..=255).map(|byte| linear(f64::from(byte) / 255.0) as f32).collect();
+    let table: Vec<f32> = (0..=255).map(|byte| decoded(f64::from(byte) / 255.0) as f32).collect();
     for number in &mut screen {
         *number = match table.get(*number as usize) {
             Some(&linear) if scale > 1.0 && number.fract() == 0.0 && *number >= 0.0 => linear,
-            _ => linear(f64::from(*number).max(0.0) / scale) as f32,
+            _ => decoded(f64::from(*number).max(0.0) / scale) as f32,
         };
     }
     screen.into()
