@@ -19,17 +19,13 @@ impl Imported {
     /// The result of reading particles. Their nodes have no places in the file, so a model without warnings
     /// keeps none of it.
     pub(super) fn of_particles(bytes: &[u8], read: ReadModel) -> Result<Self, Diagnostics> {
-        let placed = |list: &[Diagnostic]| list.iter().any(|one| one.span.is_some());
-        let source = |list: &[Diagnostic]| placed(list).then(|| SourceText::new(SourceText::UNNAMED, bytes));
+        let source = || Some(SourceText::new(SourceText::UNNAMED, bytes));
         match read {
             Ok((model, warnings)) => {
-                let source = source(&warnings);
+                let source = if warnings.is_empty() { None } else { source() };
                 Ok(Self { model, warnings: Diagnostics::new(warnings, source) })
             }
-            Err(list) => {
-                let source = source(&list);
-                Err(Diagnostics::new(list, source))
-            }
+            Err(list) => Err(Diagnostics::new(list, source())),
         }
     }
 
