@@ -86,16 +86,17 @@ impl Findings {
 
 impl Checked {
     fn leaves(&self) -> usize {
-        let primitive = |kind: &NodeKind| match kind {
-            NodeKind::Primitive(_) => true,
+        let primitives = |kind: &NodeKind| match kind {
+            NodeKind::Primitive(_) => 1,
+            NodeKind::Particles(particles) => particles.len(),
             NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => false,
+            | NodeKind::Attribute { .. } => 0,
         };
-        self.tree.nodes().iter().filter(|node| primitive(&node.kind)).count()
+        self.tree.nodes().iter().map(|node| primitives(&node.kind)).sum()
     }
 
     /// For machines.

@@ -3,11 +3,22 @@
 //! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
 //! meaning: they are the case of one thread.
 
+use jbt_lower::Workers;
+
 #[cfg(feature = "parallel")]
 pub(crate) use rayon::{current_num_threads as thread_count, join, prelude::*};
 
 #[cfg(not(feature = "parallel"))]
 pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, join, thread_count};
+
+/// What other crates have done on the threads of this one.
+pub(crate) struct PoolWorkers;
+
+impl Workers for PoolWorkers {
+    fn each(&self, count: usize, task: &(dyn Fn(usize) + Sync)) {
+        (0..count).into_par_iter().for_each(task);
+    }
+}
 
 #[cfg(not(feature = "parallel"))]
 mod serial {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jbt::import::particles::{ParticleForm, ParticleOptions};
 use jbt::{SceneFormat, text};
 
 /// The scene, and what its text leaves open.
@@ -26,12 +27,65 @@ pub struct SceneOptions {
     /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored
     #[arg(long)]
     pub mirror: bool,
+    #[command(flatten)]
+    pub particles: ParticleArguments,
+}
+
+/// What a file of particles or atoms leaves open.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Particles and atoms")]
+pub struct ParticleArguments {
+    /// The radius of points that have none: alone, the surface of each is there
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub radius: Option<f64>,
+    /// Multiply all radii; 0.6 gives bonds of molecules a waist
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    pub scale: Option<f64>,
+    /// The field of a point: `soft` ends at two radii, `blinn` is Blinn's Gaussian at iso 1, `blinn:H` with
+    /// another hardness than 2
+    #[arg(long, value_name = "soft|blinn[:H]", value_parser = form)]
+    pub form: Option<ParticleForm>,
+    /// What the columns of a table are, in order: x, y, z, radius, strength, r, g, b, names of attributes, or
+    /// `-` for one to leave out
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
+    pub columns: Vec<String>,
+    /// Arrays of the file that become attributes
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub values: Vec<String>,
+    /// Keep molecules of water
+    #[arg(long)]
+    pub waters: bool,
+    /// The frame of a trajectory, or the model of a structure, from 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frame: Option<u32>,
 }
 
 impl SceneOptions {
     /// As the library takes them.
     pub fn to_library(&self) -> text::Options {
-        text::Options { parameters: self.definitions.clone(), object: self.object.clone() }
+        let ParticleArguments { radius, scale, form, columns, values, waters, frame } =
+            self.particles.clone();
+        let frame = frame.map(|frame| frame as usize);
+        text::Options {
+            parameters: self.definitions.clone(),
+            object: self.object.clone(),
+            particles: ParticleOptions { radius, scale, form, columns, values, waters, frame },
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a number above 0".to_owned()) }
+}
+
+fn form(text: &str) -> Result<ParticleForm, String> {
+    let (word, hardness) = text.split_once(':').map_or((text, None), |(word, rest)| (word, Some(rest)));
+    match (word, hardness) {
+        ("soft", None) => Ok(ParticleForm::Soft),
+        ("blinn", None) => Ok(ParticleForm::Blinn(2.0)),
+        ("blinn", Some(hardness)) => positive(hardness).map(ParticleForm::Blinn),
+        _ => Err("expected soft, blinn, or blinn:H".to_owned()),
     }
 }
 

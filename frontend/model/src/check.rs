@@ -45,6 +45,7 @@ mod node;
 mod numbers;
 mod order;
 mod parameters;
+mod particles;
 mod tree;
 
 pub use arena::{CheckedNode, Children, NodeId};

@@ -33,6 +33,7 @@ pub mod orientation;
 pub mod origin;
 pub mod owner;
 pub mod parameter;
+pub mod particles;
 mod power;
 pub mod query;
 pub mod report;

@@ -315,7 +315,8 @@ impl Tree {
     /// ```
     #[must_use]
     pub fn falloff_by(&self, formula: impl Fn(Term) -> Term) -> Self {
-        self.rewrite(|tree| {
+        // A formula is about one field, so each particle becomes a node.
+        self.as_points().rewrite(|tree| {
             let Written::Primitive { strength, .. } = tree.node().written() else { return None };
             let cone = tree.falloff(Falloff::Linear).strength(1.0);
             let field = formula(1.0 - cone.field());

@@ -24,7 +24,7 @@
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" node
 //!            | node ;
-//! node       = primitive | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
+//! node       = primitive | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
 //! formula    = "expression" [ box ] "{" { NAME "=" expression "," } expression "}"
 //!            | box "{" node "}"                              the node's field, and 0 outside of the box
 //!            | "falloff" FALLOFF "radius" expression "{" node "}" ;   the node's field is a distance; what is negative is 0
@@ -35,6 +35,11 @@
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
 //!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]   soft if not written
 //!            | "strength" expression ;                       1 if not written
+//! particles  = "particles" "{" { parameter } "}" ;           the sum of points; in any order, each once:
+//!              "at" "(" { vector } ")"                        where they are
+//!            | ( "radius" | "surface_radius" | "strength" ) ( expression | "(" { number } ")" )     for all, or for each
+//!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]
+//!            | [ "with" ] NAME ( values | "(" { vector } ")" ) ;    of an attribute: for all, or for each
 //! operator   = "sum" | "product" | "union" | "intersection" | "difference" | "symmetric_difference"
 //!            | [ "blend" ] "ricci" expression                at least 1, or at most -1
 //!            | ( "smooth_union" | "smooth_intersection" | "smooth_difference" ) [ "width" ] expression
@@ -121,6 +126,7 @@ mod map;
 mod node;
 mod operator;
 mod parse;
+mod particles;
 mod primitive;
 mod print;
 mod scope;

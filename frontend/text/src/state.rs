@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 
 use super::hints::foreign_mark;
+use super::import::particles::ParticleOptions;
 use super::lex::{Lexer, Token, TokenKind};
 use super::scope::FormulaScope;
 use jbt_model::attribute::AttributeGroup;
@@ -26,6 +27,8 @@ pub struct Options {
     pub parameters: Vec<(String, f64)>,
     /// The object to read, of a file that holds several; those that nothing refers to without it.
     pub object: Option<String>,
+    /// What is said of particles, of a file that holds some.
+    pub particles: ParticleOptions,
 }
 
 /// The state of reading one text.

@@ -80,7 +80,7 @@ impl Parser<'_> {
     }
 
     /// Whether what is next belongs to what stands around a vector, so that its `)` must be missing.
-    fn vector_is_cut_off(&self) -> bool {
+    pub(super) fn vector_is_cut_off(&self) -> bool {
         let token = self.peek();
         let brace = token.is(b'{') || token.is(b'}');
         let field = self
@@ -90,7 +90,7 @@ impl Parser<'_> {
     }
 
     /// Past the `)` of a vector that has an error, if it comes before the end of the block.
-    fn skip_to_close(&mut self) {
+    pub(super) fn skip_to_close(&mut self) {
         let mut depth = 0usize;
         loop {
             match self.peek().kind {

@@ -21,7 +21,7 @@ const MODEL: &[&[&str]] = &[
     &["function"],
     &["number"],
     &["expression", "interop"],
-    &["attribute", "map", "warp"],
+    &["attribute", "map", "particles", "warp"],
     // What nodes mean, and what was written.
     &["kind"],
     &["written"],

@@ -220,7 +220,8 @@ impl CheckedTree {
 pub(super) fn is_in_pieces(kind: &NodeKind) -> bool {
     match kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),
-        NodeKind::Combine(_)
+        NodeKind::Particles(_)
+        | NodeKind::Combine(_)
         | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)

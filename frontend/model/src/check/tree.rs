@@ -242,6 +242,7 @@ fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
             let support = leaf.skeleton.bounds_within(leaf.radius);
             Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
         }
+        NodeKind::Particles(particles) => particles.extent(),
         NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
         NodeKind::Combine(combinator) => combinator.extent(children, iso),
         NodeKind::Expression(expression) => {

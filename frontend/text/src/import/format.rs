@@ -6,7 +6,8 @@
 //!
 //! Commands, help texts, messages and the choice of a reader derive from the rows.
 
-use super::Imported;
+use super::imported::{Imported, ReadModel};
+use super::particles::{MAX_PARTICLE_BYTES, ParticleOptions};
 use crate::Options;
 use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics};
@@ -25,10 +26,21 @@ pub(crate) struct SceneFormatRow {
     pub(crate) has_parameters: bool,
     /// Its files hold named objects, of which options may choose one.
     pub(crate) has_objects: bool,
+    /// Its files hold particles or atoms, of which options say more.
+    pub(crate) has_particles: bool,
     /// The most bytes that are read of a file.
     pub(crate) max_bytes: usize,
     /// The model of a file of at most that many bytes.
-    pub(crate) read: fn(&[u8], &Options) -> Result<Imported, Diagnostics>,
+    pub(crate) read: SceneReader,
+}
+
+/// What reads files of a format.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SceneReader {
+    /// With all options.
+    Scene(fn(&[u8], &Options) -> Result<Imported, Diagnostics>),
+    /// With those of particles.
+    Particles(fn(&[u8], &ParticleOptions) -> ReadModel),
 }
 
 impl SceneFormatRow {
@@ -39,8 +51,42 @@ impl SceneFormatRow {
         read: fn(&[u8], &Options) -> Result<Imported, Diagnostics>,
     ) -> Self {
         let recognizes = |_: &[u8]| false;
-        let (has_parameters, has_objects) = (false, false);
-        Self { extensions, text, recognizes, has_parameters, has_objects, max_bytes: MAX_SCENE_BYTES, read }
+        Self {
+            extensions,
+            text,
+            recognizes,
+            has_parameters: false,
+            has_objects: false,
+            has_particles: false,
+            max_bytes: MAX_SCENE_BYTES,
+            read: SceneReader::Scene(read),
+        }
+    }
+
+    fn read(&self, bytes: &[u8], options: &Options) -> Result<Imported, Diagnostics> {
+        match self.read {
+            SceneReader::Scene(read) => read(bytes, options),
+            SceneReader::Particles(read) => Imported::of_particles(bytes, read(bytes, &options.particles)),
+        }
+    }
+
+    /// Particles or atoms.
+    pub(crate) const fn of_particles(
+        extensions: &'static [&'static str],
+        text: &'static str,
+        recognizes: fn(&[u8]) -> bool,
+        read: fn(&[u8], &ParticleOptions) -> ReadModel,
+    ) -> Self {
+        Self {
+            extensions,
+            text,
+            recognizes,
+            has_parameters: false,
+            has_objects: false,
+            has_particles: true,
+            max_bytes: MAX_PARTICLE_BYTES,
+            read: SceneReader::Particles(read),
+        }
     }
 }
 
@@ -67,6 +113,22 @@ macro_rules! formats {
 }
 
 formats! {
+    /// An array of numpy: see [`particles`](super::particles).
+    Npy = npy,
+    /// A polygon file, of which the vertices are read.
+    Ply = ply,
+    /// A legacy file of VTK.
+    Vtk = vtk,
+    /// An XML file of VTK.
+    Vtu = vtu,
+    /// A structure of a molecule: mmCIF.
+    Cif = cif,
+    /// A structure of a molecule: PDB.
+    Pdb = pdb,
+    /// Atoms, or a cloud of points.
+    Xyz = xyz,
+    /// A table of points.
+    Csv = csv,
     /// A tree of three-js-blobtree: see [`threejs`](fn@super::threejs).
     ThreeJs = threejs,
     /// A POV-Ray scene: see [`pov`](fn@super::pov).
@@ -178,7 +240,10 @@ impl SceneFormat {
                 format!("no parameter `{parameter}` to define")
             }
             (_, Some(object)) if !row.has_objects => format!("no objects to choose `{object}` from"),
-            _ => return (row.read)(bytes, options).map_err(|error| error.named(name)),
+            _ if options.particles.is_set() && !row.has_particles => {
+                "no particles for options to be about".to_owned()
+            }
+            _ => return row.read(bytes, options).map_err(|error| error.named(name)),
         };
         let message = format!("{name} is {}: it has {refused}", row.text);
         Err(vec![Diagnostic::error(None, message)].into())

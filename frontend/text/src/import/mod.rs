@@ -8,6 +8,7 @@ mod format;
 mod imported;
 mod jbt;
 mod parsip;
+pub mod particles;
 mod pov;
 mod rib;
 mod srgb;
@@ -23,3 +24,5 @@ pub use pov::pov;
 pub use rib::rib;
 pub use threejs::threejs;
 pub use vm::vm;
+
+use particles::{cif, csv, npy, pdb, ply, vtk, vtu, xyz};
