@@ -1,0 +1,48 @@
+//! `jbt._jbt`: the native part of the Python package `jbt`, which says in Python what users see.
+//!
+//! ```text
+//! jbt/*.py     names, types, documentation; arguments become arrays and numbers of one kind    what users see
+//! jbt._jbt     models, evaluators, long work; arrays of NumPy are borrowed or given away      this crate
+//! jbt (Rust)   everything else
+//! ```
+//!
+//! Nothing here has a name that users call, but for classes that have no Python part ([`number::Number`],
+//! [`number::Term`]). Errors of jbt become exceptions in one place ([`error`]), long work and threads have
+//! one door ([`work`]). Whatever takes time runs without the interpreter's lock.
+
+mod cloud;
+mod columns;
+mod contour;
+mod error;
+mod evaluator;
+mod fields;
+mod members;
+mod mesh;
+mod model;
+mod number;
+mod picture;
+mod rays;
+mod sample;
+mod solid;
+mod work;
+
+/// The native part of `jbt`.
+#[pyo3::pymodule]
+mod _jbt {
+    #[pymodule_export]
+    use crate::cloud::points;
+    #[pymodule_export]
+    use crate::evaluator::Evaluator;
+    #[pymodule_export]
+    use crate::members::{engines, functions, mesh_formats, members, scene_formats, views};
+    #[pymodule_export]
+    use crate::mesh::save_mesh;
+    #[pymodule_export]
+    use crate::model::{Falloff, Model, Pattern};
+    #[pymodule_export]
+    use crate::number::{Number, Term, call, coordinate, falloff_of};
+    #[pymodule_export]
+    use crate::picture::encode_png;
+    #[pymodule_export]
+    use crate::work::{compile_counters, thread_count};
+}
