@@ -45,4 +45,9 @@ mod _jbt {
     use crate::picture::encode_png;
     #[pymodule_export]
     use crate::work::{compile_counters, thread_count};
+
+    /// The version of the package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

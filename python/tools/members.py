@@ -15,7 +15,7 @@ import re
 import sys
 import textwrap
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent.parent / "docs"
@@ -52,14 +52,14 @@ KINDS: dict[str, tuple[str, str, str]] = {
     "rows": ("Matrix", "3 rows of 4 numbers", "[(1, 0, 0, 2), (0, 1, 0, 0), (0, 0, 1, 0)]"),
 }
 
-HEAD = '''"""What there is to build with. tools/members.py wrote this file: change the lists of Rust, or docs/."""
+HEAD = '''"""What there is to build with. tools/members.py wrote it from the lists of Rust and docs/."""
 
 # ruff: noqa: E501
 # fmt: off
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from ._calls import apply, falloff_of, function, operator, pattern, primitive
 from ._jbt import Falloff, Number, Pattern, Term
@@ -71,7 +71,10 @@ if TYPE_CHECKING:
 '''
 
 PRIMITIVE = [
-    ("radius", "where the field reaches zero: the support radius; a number > 0. Either this or the next one."),
+    (
+        "radius",
+        "where the field reaches zero, the support radius; a number > 0. This or the next one.",
+    ),
     ("surface_radius", "where the surface of this primitive alone is; a number > 0."),
     ("falloff", 'how the field fades: a falloff, or the name of one; default "soft".'),
     ("strength", "a factor of the field; any number, default 1. A negative one carves in sums."),
@@ -198,6 +201,13 @@ def doctest(code: str, output: str) -> list[str]:
     return [">>> import jbt", f">>> {code}", *[line.rstrip() for line in output.splitlines() if line.strip()]]
 
 
+Row: TypeAlias = dict[str, Any]
+Fields: TypeAlias = list[Field]
+Words: TypeAlias = list[str]
+Lines: TypeAlias = list[str]
+Arguments: TypeAlias = list[tuple[str, str]]
+
+
 class Writer:
     def __init__(self, module: Any) -> None:
         self.module = module
@@ -207,10 +217,11 @@ class Writer:
         return [eval(field.example) for field in fields]
 
     def ball(self) -> Any:
-        return self.skeleton("point", [(0, 0, 0)])
+        return self.skeletal("point", [(0, 0, 0)])
 
-    def skeleton(self, name: str, values: list[Any]) -> Any:
-        return self.module.Model.primitive(name, values, ("radius", 1.0), self.module.Falloff.named("soft"), 1.0)
+    def skeletal(self, name: str, values: list[Any]) -> Any:
+        soft = self.module.Falloff.named("soft")
+        return self.module.Model.primitive(name, values, ("radius", 1.0), soft, 1.0)
 
     def member(self, row: dict[str, Any]) -> list[str]:
         """A function or method for a member."""
@@ -219,72 +230,87 @@ class Writer:
         lines = section(self.pages[PAGES[family]], row["word"])
         words = prose(lines)
         arguments = [about(field, meanings(lines)) for field in fields]
-        return getattr(self, family)(name, row, fields, words, arguments)
+        writer: Any = {
+            "skeleton": self.skeleton,
+            "falloff": self.falloff,
+            "operator": self.operator,
+            "map": self.map,
+            "warp": self.warp,
+            "texture": self.texture,
+        }[family]
+        lines = writer(name, row, fields, words, arguments)
+        return list(lines)
 
     def function_of(
         self, name: str, given: str, returns: str, body: str, doc: tuple[Any, Any, Any], indent: int = 0
     ) -> list[str]:
         pad = " " * indent
         head = f"{pad}def {name}({given}) -> {returns}:"
-        return [head, *docstring(*doc, indent + 4), f"{pad}    return {body}", "", *([""] if not indent else [])]
+        return [
+            head,
+            *docstring(*doc, indent + 4),
+            f"{pad}    return {body}",
+            "",
+            *([""] if not indent else []),
+        ]
 
-    def skeleton_row(self, fields: list[Field]) -> str:
+    def listed(self, fields: list[Field]) -> str:
         return "[" + ", ".join(field.name for field in fields) + "]"
 
     # One method for each family: the name, the row, its fields, paragraphs, arguments.
 
-    def map(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
+    def map(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
         text = self.ball().map(name, self.values(fields)).text()
         return self.method("map", name, fields, words, arguments, text)
 
-    def warp(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
+    def warp(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
         text = self.ball().warp(name, self.values(fields)).text()
         return self.method("warp", name, fields, words, arguments, text)
 
-    def method(self, family, name, fields, words, arguments, text):  # type: ignore[no-untyped-def]
+    def method(
+        self, family: str, name: str, fields: Fields, words: Words, arguments: Arguments, text: str
+    ) -> Lines:
         example = doctest(f"print(jbt.point(radius=1).{name}({call(fields)}))", text)
         given = "self" + (f", {parameters(fields)}" if fields else "")
-        body = f'apply(self, "{family}", "{name}", {self.skeleton_row(fields)})'
+        body = f'apply(self, "{family}", "{name}", {self.listed(fields)})'
         return self.function_of(name, given, "Model", body, (words, arguments, example), 4)
 
-    def operator(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
+    def operator(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
         count = 1 if row["takes_one"] else 2
         text = self.module.Model.combine(name, self.values(fields), [self.ball()] * count).text()
         if row["takes_one"]:
             return self.method("operator", name, fields, words, arguments, text)
-        code = f"ball = jbt.point(radius=1); print(jbt.{name}(ball, ball{', ' if fields else ''}{call(fields, named=True)}))"
+        others = ", " + call(fields, named=True) if fields else ""
+        code = f"ball = jbt.point(radius=1); print(jbt.{name}(ball, ball{others}))"
         given = "*models: Models" + (f", {', '.join(f.parameter() for f in fields)}" if fields else "")
         models = ("models", "models, or lists of them; at least one.")
-        body = f'operator("{name}", {self.skeleton_row(fields)}, models)'
+        body = f'operator("{name}", {self.listed(fields)}, models)'
         return self.function_of(
             name, given, "Model", body, (words, [models, *arguments], doctest(code, text))
         )
 
-    def falloff(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
+    def falloff(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
         shown = repr(self.module.Falloff(name, self.values(fields)))
         example = doctest(f"jbt.{name}({call(fields)})", shown)
-        body = f'falloff_of("{name}", {self.skeleton_row(fields)})'
+        body = f'falloff_of("{name}", {self.listed(fields)})'
         return self.function_of(name, parameters(fields), "Falloff", body, (words, arguments, example))
 
-    def texture(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
+    def texture(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
         pattern = self.module.Pattern(name, self.values(fields))
         text = self.ball().textured("rough", pattern, 0, 1).text()
         code = f'print(jbt.point(radius=1).textured("rough", jbt.{name}({call(fields)}), 0, 1))'
-        body = f'pattern("{name}", {self.skeleton_row(fields)})'
+        body = f'pattern("{name}", {self.listed(fields)})'
         return self.function_of(
             name, parameters(fields), "Pattern", body, (words, arguments, doctest(code, text))
         )
 
-    def primitive(self, name, row, fields, words, arguments):  # type: ignore[no-untyped-def]
-        text = self.skeleton(name, self.values(fields)).text()
+    def skeleton(self, name: str, row: Row, fields: Fields, words: Words, arguments: Arguments) -> Lines:
+        text = self.skeletal(name, self.values(fields)).text()
         example = doctest(f"print(jbt.{name}({call(fields)}{', ' if fields else ''}radius=1))", text)
         given = parameters(fields)
         star = "" if "*, " in given else "*, "
         given = f"{given}{', ' if given else ''}{star}{PRIMITIVE_ARGUMENTS}"
-        body = (
-            f'primitive("{name}", {self.skeleton_row(fields)}, '
-            "radius, surface_radius, falloff, strength, color)"
-        )
+        body = f'primitive("{name}", {self.listed(fields)}, radius, surface_radius, falloff, strength, color)'
         return self.function_of(name, given, "Model", body, (words, [*arguments, *PRIMITIVE], example))
 
     def formula(self, name: str, least: int, most: int) -> list[str]:
@@ -302,24 +328,26 @@ class Writer:
             signatures = [("*values: Real", "Number"), ("*values: Formula", "Term")]
             given, passed = "*values: Formula", "*values"
         else:
-            kinds = [["Real"] * place + ["Term"] + ["Formula"] * (least - place - 1) for place in range(least)]
-            kinds.append(["Real"] * least)
-            pairs = [
-                (", ".join(f"{n}: {kind}" for n, kind in zip(named, row, strict=True)), "Term" if "Term" in row else "Number")
-                for row in kinds
+            kinds = [
+                ["Real"] * place + ["Term"] + ["Formula"] * (least - place - 1) for place in range(least)
             ]
-            signatures = pairs
+            kinds.append(["Real"] * least)
+            signatures = []
+            for row in kinds:
+                signature = ", ".join(f"{n}: {kind}" for n, kind in zip(named, row, strict=True))
+                signatures.append((signature, "Term" if "Term" in row else "Number"))
             given, passed = ", ".join(f"{n}: Formula" for n in named), ", ".join(named)
         lines = []
-        for place, (signature, returns) in enumerate(signatures):
-            loose = "  # type: ignore[overload-overlap]" if signature == "*values: Real" and place == 0 else ""
+        for signature, returns in signatures:
+            loose = "  # type: ignore[overload-overlap]" if signature == "*values: Real" else ""
             lines += ["@overload", f"def {name}({signature}) -> {returns}: ...{loose}"]
         examples = [0.25, 0.5, 0.75][: max(least, 1)]
         value = self.module.call(name, examples).value
         shown = ", ".join(map(str, examples))
         example = [">>> import jbt", f">>> float(jbt.{name}({shown}))", repr(value)]
         doc = docstring(words, [], example, 4)
-        return [*lines, f"def {name}({given}) -> Number | Term:", *doc, f'    return function("{name}", {passed})', "", ""]
+        body = f'    return function("{name}", {passed})'
+        return [*lines, f"def {name}({given}) -> Any:", *doc, body, "", ""]
 
     def whole(self) -> str:
         rows = self.module.members()
@@ -328,9 +356,7 @@ class Writer:
         methods: list[str] = []
         for row in rows:
             is_method = row["takes_one"]
-            if row["family"] == "skeleton":
-                row = {**row, "family": "skeleton"}
-            written = self.member(row) if row["family"] != "skeleton" else self.skeletal(row)
+            written = self.member(row)
             if is_method:
                 methods += written
             else:
@@ -339,16 +365,11 @@ class Writer:
         for name, least, most in self.module.functions():
             lines += self.formula(name, least, most)
             names.append(name)
-        lines += ["class ModelMembers:", '    """Maps, warps and operators of one model, as methods of it."""', ""]
+        about = '    """Maps, warps and operators of one model, as methods of it."""'
+        lines += ["class ModelMembers:", about, ""]
         lines += ["    __slots__ = ()", "", *methods]
         exported = ["__all__ = [", *[f'    "{name}",' for name in ["ModelMembers", *names]], "]", "", ""]
         return HEAD + "\n".join([*exported, *lines]).rstrip() + "\n"
-
-    def skeletal(self, row: dict[str, Any]) -> list[str]:
-        fields = [Field(field, place) for place, field in enumerate(row["fields"])]
-        lines = section(self.pages["skeletons"], row["word"])
-        arguments = [about(field, meanings(lines)) for field in fields]
-        return self.primitive(row["name"], row, fields, prose(lines), arguments)
 
 
 def text(module: Any) -> str:

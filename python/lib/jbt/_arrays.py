@@ -30,7 +30,9 @@ def numeric(name: str, value: Any, expected: str) -> NDArray[Any]:
         return array
     if array.dtype.kind in "iu" or (array.dtype.kind == "f" and array.dtype.itemsize <= 8):
         return array.astype(np.float64)
-    raise TypeError(f"{name}: expected {expected}, of float32, float64 or whole numbers; got {described(array)}")
+    raise TypeError(
+        f"{name}: expected {expected}, of float32, float64 or whole numbers; got {described(array)}"
+    )
 
 
 def columns(points: Any, y: Any, z: Any) -> tuple[tuple[Column, Column, Column], tuple[int, ...], bool]:
@@ -85,7 +87,9 @@ def finite(name: str, array: NDArray[Any]) -> None:
     if array.size and not np.isfinite(array).all():
         place = np.argwhere(~np.isfinite(np.atleast_1d(array)))[0]
         index = ", ".join(str(int(part)) for part in place)
-        raise ValueError(f"{name}: expected finite numbers, got {np.atleast_1d(array)[tuple(place)]} at [{index}]")
+        raise ValueError(
+            f"{name}: expected finite numbers, got {np.atleast_1d(array)[tuple(place)]} at [{index}]"
+        )
 
 
 def region(name: str, value: Region | None) -> list[list[float]] | None:

@@ -19,7 +19,9 @@ def as_falloff(given: FalloffLike) -> _jbt.Falloff:
         return given
     if isinstance(given, str):
         return _jbt.Falloff.named(given)
-    raise TypeError(f"falloff: expected a jbt.Falloff or the name of one, got {given!r} ({type(given).__name__})")
+    raise TypeError(
+        f"falloff: expected a jbt.Falloff or the name of one, got {given!r} ({type(given).__name__})"
+    )
 
 
 def flat(models: Iterable[Models]) -> list[_jbt.Model]:
@@ -48,7 +50,9 @@ def primitive(
     from ._model import Model
 
     if (radius is None) == (surface_radius is None):
-        raise TypeError(f"{name}(): expected either radius or surface_radius, got {'none' if radius is None else 'both'}")
+        raise TypeError(
+            f"{name}(): expected either radius or surface_radius, got {'none' if radius is None else 'both'}"
+        )
     reach = ("radius", radius) if surface_radius is None else ("surface_radius", surface_radius)
     made = Model(_jbt.Model.primitive(name, values, reach, as_falloff(falloff), strength))
     return made if color is None else made.color(color)

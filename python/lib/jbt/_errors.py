@@ -36,9 +36,9 @@ class SceneError(ValueError):
     ... except jbt.SceneError as error:
     ...     print(error)
     ...     print(error.diagnostics[0].line, error.diagnostics[0].column)
-    <text>:2:20: error: this `}` closes nothing
+    <text>:2:20: error: unexpected `}`
       2 | point { radius 1 } }
-        |                    ^
+        |                    ^ no block is open here
     2 20
     """
 
@@ -60,7 +60,8 @@ class LimitError(ValueError):
 
 
 class OpenMeshWarning(UserWarning):
-    """The region cuts the surface: the mesh is open there. `warnings.simplefilter("error", ..)` refuses it."""
+    """The region cuts the surface: the mesh is open there. To refuse such meshes,
+    `warnings.simplefilter("error", jbt.OpenMeshWarning)`."""
 
 
 class SceneWarning(UserWarning):

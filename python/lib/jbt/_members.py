@@ -1,11 +1,11 @@
-"""What there is to build with. tools/members.py wrote this file: change the lists of Rust, or docs/."""
+"""What there is to build with. tools/members.py wrote it from the lists of Rust and docs/."""
 
 # ruff: noqa: E501
 # fmt: off
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from ._calls import apply, falloff_of, function, operator, pattern, primitive
 from ._jbt import Falloff, Number, Pattern, Term
@@ -101,8 +101,8 @@ def point(at: Vector = (0, 0, 0), *, radius: Real | None = None, surface_radius:
 
     Args:
         at: where it is; 3 numbers, default (0, 0, 0).
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -124,8 +124,8 @@ def segment(from_: Vector, to: Vector, *, radius: Real | None = None, surface_ra
     Args:
         from_: one end; 3 numbers, required.
         to: the other end; 3 numbers, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -149,18 +149,18 @@ def disc(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), *, disc_
         normal: the direction that it faces, either of the two; 3 numbers, not all 0, or "x", "y",
             "z", default (0, 0, 1).
         disc_radius: how far it reaches from the middle; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.disc((0.1, 0.2, 0.3), "y", disc_radius=0.75, radius=1))
+    >>> print(jbt.disc((0.1, 0.2, 0.3), "y", disc_radius=1.25, radius=1))
     jbt 1
     iso 0.5
-    disc { center (0.1 0.2 0.3) normal (0 1 0) disc_radius 0.75 radius 1 }
+    disc { center (0.1 0.2 0.3) normal (0 1 0) disc_radius 1.25 radius 1 }
     """
     return primitive("disc", [center, normal, disc_radius], radius, surface_radius, falloff, strength, color)
 
@@ -174,18 +174,18 @@ def ring(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), *, ring_
         normal: the direction of its axis; 3 numbers, not all 0, or "x", "y", "z", default (0, 0,
             1).
         ring_radius: its distance from the middle; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.ring((0.1, 0.2, 0.3), "y", ring_radius=0.75, radius=1))
+    >>> print(jbt.ring((0.1, 0.2, 0.3), "y", ring_radius=1.25, radius=1))
     jbt 1
     iso 0.5
-    ring { center (0.1 0.2 0.3) normal (0 1 0) ring_radius 0.75 radius 1 }
+    ring { center (0.1 0.2 0.3) normal (0 1 0) ring_radius 1.25 radius 1 }
     """
     return primitive("ring", [center, normal, ring_radius], radius, surface_radius, falloff, strength, color)
 
@@ -199,18 +199,18 @@ def cylinder(from_: Vector, to: Vector, cylinder_radius: Real, *, radius: Real |
         from_: one end of the axis; 3 numbers, required.
         to: the other end of the axis; 3 numbers, required.
         cylinder_radius: how far it reaches from the axis; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.cylinder((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 0.75, radius=1))
+    >>> print(jbt.cylinder((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 1.25, radius=1))
     jbt 1
     iso 0.5
-    cylinder { from (0.1 0.2 0.3) to (0.1 0.2 0.4) cylinder_radius 0.75 radius 1 }
+    cylinder { from (0.1 0.2 0.3) to (0.1 0.2 0.4) cylinder_radius 1.25 radius 1 }
     """
     return primitive("cylinder", [from_, to, cylinder_radius], radius, surface_radius, falloff, strength, color)
 
@@ -222,8 +222,8 @@ def cuboid(center: Vector = (0, 0, 0), *, half: Vector, radius: Real | None = No
     Args:
         center: its middle; 3 numbers, default (0, 0, 0).
         half: half its sides; 3 numbers >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -246,8 +246,8 @@ def triangle(a: Vector, b: Vector, c: Vector, *, radius: Real | None = None, sur
         a: a corner; 3 numbers, required.
         b: a corner; 3 numbers, required.
         c: a corner; 3 numbers, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -269,8 +269,8 @@ def polyline(points: Points, radii: Reals = (), closed: bool = False, *, radius:
         points: at least two; points, required.
         radii: none: it is thin; one for all points; or one for each; numbers >= 0, default ().
         closed: whether a line leads from the last point to the first; True or False, default False.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -294,8 +294,8 @@ def polygon(points: Points, *, radius: Real | None = None, surface_radius: Real 
 
     Args:
         points: the corners, at least three; points, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -323,8 +323,8 @@ def bezier(points: Points, radii: Reals = (), *, radius: Real | None = None, sur
     Args:
         points: 4, 7, 10, .. of them; points, required.
         radii: none: it is thin; one for all points; or one for each; numbers >= 0, default ().
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -350,8 +350,8 @@ def catmull_rom(points: Points, radii: Reals = (), closed: bool = False, *, radi
         radii: none: it is thin; one for all points; or one for each; numbers >= 0, default ().
         closed: whether the curve leads on from the last point to the first; then there are at least
             three; True or False, default False.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -373,8 +373,8 @@ def sphere(center: Vector = (0, 0, 0), *, sphere_radius: Real, radius: Real | No
     Args:
         center: its middle; 3 numbers, default (0, 0, 0).
         sphere_radius: how far it reaches from the middle; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -399,18 +399,18 @@ def torus(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), *, ring
             1).
         ring_radius: the radius of the circle in the middle of the tube; a number >= 0, required.
         tube_radius: the radius of the tube; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.torus((0.1, 0.2, 0.3), "y", ring_radius=0.75, tube_radius=0.75, radius=1))
+    >>> print(jbt.torus((0.1, 0.2, 0.3), "y", ring_radius=1.25, tube_radius=1.75, radius=1))
     jbt 1
     iso 0.5
-    torus { center (0.1 0.2 0.3) normal (0 1 0) ring_radius 0.75 tube_radius 0.75 radius 1 }
+    torus { center (0.1 0.2 0.3) normal (0 1 0) ring_radius 1.25 tube_radius 1.75 radius 1 }
     """
     return primitive("torus", [center, normal, ring_radius, tube_radius], radius, surface_radius, falloff, strength, color)
 
@@ -425,18 +425,18 @@ def cone(from_: Vector, to: Vector, from_radius: Real, to_radius: Real = 0, *, r
         to: the other end of the axis; 3 numbers, required.
         from_radius: how far it reaches from the axis at ``from``; a number >= 0, required.
         to_radius: how far it reaches from the axis at ``to``; a number >= 0, default 0.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.cone((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 0.75, 0.75, radius=1))
+    >>> print(jbt.cone((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 1.25, 1.75, radius=1))
     jbt 1
     iso 0.5
-    cone { from (0.1 0.2 0.3) to (0.1 0.2 0.4) from_radius 0.75 to_radius 0.75 radius 1 }
+    cone { from (0.1 0.2 0.3) to (0.1 0.2 0.4) from_radius 1.25 to_radius 1.75 radius 1 }
     """
     return primitive("cone", [from_, to, from_radius, to_radius], radius, surface_radius, falloff, strength, color)
 
@@ -452,18 +452,18 @@ def round_cone(from_: Vector, to: Vector, from_radius: Real, to_radius: Real, *,
         to: the middle of the other ball; 3 numbers, required.
         from_radius: the radius of the ball at ``from``; a number >= 0, required.
         to_radius: the radius of the ball at ``to``; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.round_cone((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 0.75, 0.75, radius=1))
+    >>> print(jbt.round_cone((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 1.25, 1.75, radius=1))
     jbt 1
     iso 0.5
-    round_cone { from (0.1 0.2 0.3) to (0.1 0.2 0.4) from_radius 0.75 to_radius 0.75 radius 1 }
+    round_cone { from (0.1 0.2 0.3) to (0.1 0.2 0.4) from_radius 1.25 to_radius 1.75 radius 1 }
     """
     return primitive("round_cone", [from_, to, from_radius, to_radius], radius, surface_radius, falloff, strength, color)
 
@@ -480,18 +480,18 @@ def rectangle(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), alo
             all 0, or "x", "y", "z", default (1, 0, 0).
         half_length: how far it reaches along ``along``; a number >= 0, required.
         half_width: how far it reaches across ``along``; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.rectangle((0.1, 0.2, 0.3), "y", "y", half_length=0.75, half_width=0.75, radius=1))
+    >>> print(jbt.rectangle((0.1, 0.2, 0.3), "y", "y", half_length=1.75, half_width=2.25, radius=1))
     jbt 1
     iso 0.5
-    rectangle { center (0.1 0.2 0.3) normal (0 1 0) along (0 1 0) half_length 0.75 half_width 0.75 radius 1 }
+    rectangle { center (0.1 0.2 0.3) normal (0 1 0) along (0 1 0) half_length 1.75 half_width 2.25 radius 1 }
     """
     return primitive("rectangle", [center, normal, along, half_length, half_width], radius, surface_radius, falloff, strength, color)
 
@@ -509,18 +509,18 @@ def arc(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), start: Ax
             or "x", "y", "z", default (1, 0, 0).
         degrees: how far it goes; 0 .. 360, required.
         arc_radius: the radius of the circle; a number >= 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.arc((0.1, 0.2, 0.3), "y", "y", degrees=90, arc_radius=0.75, radius=1))
+    >>> print(jbt.arc((0.1, 0.2, 0.3), "y", "y", degrees=90, arc_radius=2.25, radius=1))
     jbt 1
     iso 0.5
-    arc { center (0.1 0.2 0.3) normal (0 1 0) start (0 1 0) degrees 90 arc_radius 0.75 radius 1 }
+    arc { center (0.1 0.2 0.3) normal (0 1 0) start (0 1 0) degrees 90 arc_radius 2.25 radius 1 }
     """
     return primitive("arc", [center, normal, start, degrees, arc_radius], radius, surface_radius, falloff, strength, color)
 
@@ -541,18 +541,18 @@ def helix(center: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), start: 
         pitch: how far it rises along the axis in a turn: below 0 it falls, and is left-handed; any
             number, required.
         turns: how many turns it has, whole or not; 0 .. 4096, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
         color: linear red, green and blue.
 
     >>> import jbt
-    >>> print(jbt.helix((0.1, 0.2, 0.3), "y", "y", helix_radius=0.75, pitch=0.25, turns=2048.0, radius=1))
+    >>> print(jbt.helix((0.1, 0.2, 0.3), "y", "y", helix_radius=1.75, pitch=2.25, turns=2048.0, radius=1))
     jbt 1
     iso 0.5
-    helix { center (0.1 0.2 0.3) normal (0 1 0) start (0 1 0) helix_radius 0.75 pitch 0.25 turns 2048 radius 1 }
+    helix { center (0.1 0.2 0.3) normal (0 1 0) start (0 1 0) helix_radius 1.75 pitch 2.25 turns 2048 radius 1 }
     """
     return primitive("helix", [center, normal, start, helix_radius, pitch, turns], radius, surface_radius, falloff, strength, color)
 
@@ -566,8 +566,8 @@ def half_space(at: Vector = (0, 0, 0), normal: Axis | Vector = (0, 0, 1), *, rad
         at: a point of the plane; 3 numbers, default (0, 0, 0).
         normal: the direction out of the half space; 3 numbers, not all 0, or "x", "y", "z", default
             (0, 0, 1).
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -589,8 +589,8 @@ def ellipsoid(center: Vector = (0, 0, 0), *, stretch: Vector, radius: Real | Non
     Args:
         center: its middle; 3 numbers, default (0, 0, 0).
         stretch: how many times it reaches as far as the radius; 3 numbers > 0, required.
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -614,8 +614,8 @@ def lmetric(center: Vector = (0, 0, 0), *, exponent: Real, stretch: Vector = (1,
         center: its middle; 3 numbers, default (0, 0, 0).
         exponent: l; 1 .. 1024, required.
         stretch: how many times it reaches as far as the radius; 3 numbers > 0, default (1, 1, 1).
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -641,8 +641,8 @@ def superquadric(center: Vector = (0, 0, 0), *, e1: Real, e2: Real, stretch: Vec
         e1: Barr's exponent along z; 0.001953125 .. 2, required.
         e2: Barr's exponent across z; 0.001953125 .. 2, required.
         stretch: how many times it reaches as far as the radius; 3 numbers > 0, default (1, 1, 1).
-        radius: where the field reaches zero: the support radius; a number > 0. Either this or the
-            next one.
+        radius: where the field reaches zero, the support radius; a number > 0. This or the next
+            one.
         surface_radius: where the surface of this primitive alone is; a number > 0.
         falloff: how the field fades: a falloff, or the name of one; default "soft".
         strength: a factor of the field; any number, default 1. A negative one carves in sums.
@@ -973,11 +973,11 @@ def smooth_union(*models: Models, width: Real) -> Model:
         width: a number > 0, required.
 
     >>> import jbt
-    >>> ball = jbt.point(radius=1); print(jbt.smooth_union(ball, ball, width=0.5))
+    >>> ball = jbt.point(radius=1); print(jbt.smooth_union(ball, ball, width=0.25))
     jbt 1
     iso 0.5
     let n1 = point { radius 1 }
-    smooth_union 0.5 {
+    smooth_union 0.25 {
         use n1
         use n1
     }
@@ -993,11 +993,11 @@ def smooth_intersection(*models: Models, width: Real) -> Model:
         width: a number > 0, required.
 
     >>> import jbt
-    >>> ball = jbt.point(radius=1); print(jbt.smooth_intersection(ball, ball, width=0.5))
+    >>> ball = jbt.point(radius=1); print(jbt.smooth_intersection(ball, ball, width=0.25))
     jbt 1
     iso 0.5
     let n1 = point { radius 1 }
-    smooth_intersection 0.5 {
+    smooth_intersection 0.25 {
         use n1
         use n1
     }
@@ -1016,11 +1016,11 @@ def smooth_difference(*models: Models, width: Real) -> Model:
         width: a number > 0, required.
 
     >>> import jbt
-    >>> ball = jbt.point(radius=1); print(jbt.smooth_difference(ball, ball, width=0.5))
+    >>> ball = jbt.point(radius=1); print(jbt.smooth_difference(ball, ball, width=0.25))
     jbt 1
     iso 0.5
     let n1 = point { radius 1 }
-    smooth_difference 0.5 {
+    smooth_difference 0.25 {
         use n1
         use n1
     }
@@ -1146,11 +1146,11 @@ def checker(size: Real = 1) -> Pattern:
         size: the side of a cube; a number > 0, default 1.
 
     >>> import jbt
-    >>> print(jbt.point(radius=1).textured("rough", jbt.checker(0.5), 0, 1))
+    >>> print(jbt.point(radius=1).textured("rough", jbt.checker(0.25), 0, 1))
     jbt 1
     iso 0.5
     attribute rough 1 default 0 blend
-    rough checker { a 0 b 1 size 0.5 } { point { radius 1 } }
+    rough checker { a 0 b 1 size 0.25 } { point { radius 1 } }
     """
     return pattern("checker", [size])
 
@@ -1164,11 +1164,11 @@ def stripes(along: Axis | Vector = (1, 0, 0), width: Real = 1) -> Pattern:
         width: how thick each is; a number > 0, default 1.
 
     >>> import jbt
-    >>> print(jbt.point(radius=1).textured("rough", jbt.stripes("y", 0.5), 0, 1))
+    >>> print(jbt.point(radius=1).textured("rough", jbt.stripes("y", 0.75), 0, 1))
     jbt 1
     iso 0.5
     attribute rough 1 default 0 blend
-    rough stripes { a 0 b 1 along (0 1 0) width 0.5 } { point { radius 1 } }
+    rough stripes { a 0 b 1 along (0 1 0) width 0.75 } { point { radius 1 } }
     """
     return pattern("stripes", [along, width])
 
@@ -1206,11 +1206,11 @@ def noise(size: Real = 1, octaves: Real = 1, seed: Real = 0) -> Pattern:
             number, default 0.
 
     >>> import jbt
-    >>> print(jbt.point(radius=1).textured("rough", jbt.noise(0.5, 0.5, 0.25), 0, 1))
+    >>> print(jbt.point(radius=1).textured("rough", jbt.noise(0.25, 0.75, 1.25), 0, 1))
     jbt 1
     iso 0.5
     attribute rough 1 default 0 blend
-    rough noise { a 0 b 1 size 0.5 octaves 0.5 seed 0.25 } { point { radius 1 } }
+    rough noise { a 0 b 1 size 0.25 octaves 0.75 seed 1.25 } { point { radius 1 } }
     """
     return pattern("noise", [size, octaves, seed])
 
@@ -1229,11 +1229,11 @@ def rings(along: Axis | Vector = (0, 0, 1), width: Real = 1, turbulence: Real = 
         seed: tells one noise from another; any number, default 0.
 
     >>> import jbt
-    >>> print(jbt.point(radius=1).textured("rough", jbt.rings("y", 0.5, 0.25, 0.5, 0.25), 0, 1))
+    >>> print(jbt.point(radius=1).textured("rough", jbt.rings("y", 0.75, 1.25, 1.75, 2.25), 0, 1))
     jbt 1
     iso 0.5
     attribute rough 1 default 0 blend
-    rough rings { a 0 b 1 along (0 1 0) width 0.5 turbulence 0.25 size 0.5 seed 0.25 } { point { radius 1 } }
+    rough rings { a 0 b 1 along (0 1 0) width 0.75 turbulence 1.25 size 1.75 seed 2.25 } { point { radius 1 } }
     """
     return pattern("rings", [along, width, turbulence, size, seed])
 
@@ -1252,11 +1252,11 @@ def marble(along: Axis | Vector = (1, 0, 0), width: Real = 1, turbulence: Real =
         seed: tells one noise from another; any number, default 0.
 
     >>> import jbt
-    >>> print(jbt.point(radius=1).textured("rough", jbt.marble("y", 0.5, 0.25, 0.5, 0.25), 0, 1))
+    >>> print(jbt.point(radius=1).textured("rough", jbt.marble("y", 0.75, 1.25, 1.75, 2.25), 0, 1))
     jbt 1
     iso 0.5
     attribute rough 1 default 0 blend
-    rough marble { a 0 b 1 along (0 1 0) width 0.5 turbulence 0.25 size 0.5 seed 0.25 } { point { radius 1 } }
+    rough marble { a 0 b 1 along (0 1 0) width 0.75 turbulence 1.25 size 1.75 seed 2.25 } { point { radius 1 } }
     """
     return pattern("marble", [along, width, turbulence, size, seed])
 
@@ -1265,7 +1265,7 @@ def marble(along: Axis | Vector = (1, 0, 0), width: Real = 1, turbulence: Real =
 def sqrt(x: Term) -> Term: ...
 @overload
 def sqrt(x: Real) -> Number: ...
-def sqrt(x: Formula) -> Number | Term:
+def sqrt(x: Formula) -> Any:
     r"""``sqrt(x)``: the square root.
 
     Where it has no value, or a kink: of what is negative: 0; its derivative at 0 is 0.
@@ -1281,7 +1281,7 @@ def sqrt(x: Formula) -> Number | Term:
 def sin(x: Term) -> Term: ...
 @overload
 def sin(x: Real) -> Number: ...
-def sin(x: Formula) -> Number | Term:
+def sin(x: Formula) -> Any:
     r"""``sin(x)``: of radians.
 
     Where it has no value, or a kink: |
@@ -1299,7 +1299,7 @@ def sin(x: Formula) -> Number | Term:
 def cos(x: Term) -> Term: ...
 @overload
 def cos(x: Real) -> Number: ...
-def cos(x: Formula) -> Number | Term:
+def cos(x: Formula) -> Any:
     r"""``cos(x)``: of radians.
 
     Where it has no value, or a kink: |
@@ -1317,7 +1317,7 @@ def cos(x: Formula) -> Number | Term:
 def tan(x: Term) -> Term: ...
 @overload
 def tan(x: Real) -> Number: ...
-def tan(x: Formula) -> Number | Term:
+def tan(x: Formula) -> Any:
     r"""``tan(x)``: of radians.
 
     Where it has no value, or a kink: large at its poles.
@@ -1333,7 +1333,7 @@ def tan(x: Formula) -> Number | Term:
 def asin(x: Term) -> Term: ...
 @overload
 def asin(x: Real) -> Number: ...
-def asin(x: Formula) -> Number | Term:
+def asin(x: Formula) -> Any:
     r"""``asin(x)``: radians.
 
     Where it has no value, or a kink: beyond -1 and 1: as at the nearer end.
@@ -1349,7 +1349,7 @@ def asin(x: Formula) -> Number | Term:
 def acos(x: Term) -> Term: ...
 @overload
 def acos(x: Real) -> Number: ...
-def acos(x: Formula) -> Number | Term:
+def acos(x: Formula) -> Any:
     r"""``acos(x)``: radians.
 
     Where it has no value, or a kink: beyond -1 and 1: as at the nearer end.
@@ -1365,7 +1365,7 @@ def acos(x: Formula) -> Number | Term:
 def atan(x: Term) -> Term: ...
 @overload
 def atan(x: Real) -> Number: ...
-def atan(x: Formula) -> Number | Term:
+def atan(x: Formula) -> Any:
     r"""``atan(x)``: radians.
 
     Where it has no value, or a kink: |
@@ -1384,7 +1384,7 @@ def atan2(y: Term, x: Formula) -> Term: ...
 def atan2(y: Real, x: Term) -> Term: ...
 @overload
 def atan2(y: Real, x: Real) -> Number: ...
-def atan2(y: Formula, x: Formula) -> Number | Term:
+def atan2(y: Formula, x: Formula) -> Any:
     r"""``atan2(y, x)``: the angle of the point (x, y), in [-pi, pi].
 
     Where it has no value, or a kink: at the origin 0, its derivative too; it jumps on the negative
@@ -1401,7 +1401,7 @@ def atan2(y: Formula, x: Formula) -> Number | Term:
 def abs(x: Term) -> Term: ...
 @overload
 def abs(x: Real) -> Number: ...
-def abs(x: Formula) -> Number | Term:
+def abs(x: Formula) -> Any:
     r"""``abs(x)``: the magnitude.
 
     Where it has no value, or a kink: a kink at 0.
@@ -1417,7 +1417,7 @@ def abs(x: Formula) -> Number | Term:
 def sign(x: Term) -> Term: ...
 @overload
 def sign(x: Real) -> Number: ...
-def sign(x: Formula) -> Number | Term:
+def sign(x: Formula) -> Any:
     r"""``sign(x)``: -1, 0 or 1.
 
     Where it has no value, or a kink: jumps at 0.
@@ -1433,7 +1433,7 @@ def sign(x: Formula) -> Number | Term:
 def floor(x: Term) -> Term: ...
 @overload
 def floor(x: Real) -> Number: ...
-def floor(x: Formula) -> Number | Term:
+def floor(x: Formula) -> Any:
     r"""``floor(x)``: down, up to a whole number.
 
     Where it has no value, or a kink: jumps; numbers beyond 2^22 count as whole.
@@ -1449,7 +1449,7 @@ def floor(x: Formula) -> Number | Term:
 def ceil(x: Term) -> Term: ...
 @overload
 def ceil(x: Real) -> Number: ...
-def ceil(x: Formula) -> Number | Term:
+def ceil(x: Formula) -> Any:
     r"""``ceil(x)``: down, up to a whole number.
 
     Where it has no value, or a kink: jumps; numbers beyond 2^22 count as whole.
@@ -1465,7 +1465,7 @@ def ceil(x: Formula) -> Number | Term:
 def round(x: Term) -> Term: ...
 @overload
 def round(x: Real) -> Number: ...
-def round(x: Formula) -> Number | Term:
+def round(x: Formula) -> Any:
     r"""``round(x)``: to the nearest whole number, ties to the even one.
 
     Where it has no value, or a kink: jumps; likewise.
@@ -1483,7 +1483,7 @@ def mod(x: Term, y: Formula) -> Term: ...
 def mod(x: Real, y: Term) -> Term: ...
 @overload
 def mod(x: Real, y: Real) -> Number: ...
-def mod(x: Formula, y: Formula) -> Number | Term:
+def mod(x: Formula, y: Formula) -> Any:
     r"""``mod(x, y)``: what is left after whole multiples of y: at least 0 and below the magnitude
     of y.
 
@@ -1500,7 +1500,7 @@ def mod(x: Formula, y: Formula) -> Number | Term:
 def exp(x: Term) -> Term: ...
 @overload
 def exp(x: Real) -> Number: ...
-def exp(x: Formula) -> Number | Term:
+def exp(x: Formula) -> Any:
     r"""``exp(x)``: | overflow ends at the largest field, see below.
 
     Where it has no value, or a kink:
@@ -1517,7 +1517,7 @@ def exp(x: Formula) -> Number | Term:
 def ln(x: Term) -> Term: ...
 @overload
 def ln(x: Real) -> Number: ...
-def ln(x: Formula) -> Number | Term:
+def ln(x: Formula) -> Any:
     r"""``ln(x)``: | below 2^-126: as at 2^-126.
 
     Where it has no value, or a kink:
@@ -1534,7 +1534,7 @@ def ln(x: Formula) -> Number | Term:
 def square(x: Term) -> Term: ...
 @overload
 def square(x: Real) -> Number: ...
-def square(x: Formula) -> Number | Term:
+def square(x: Formula) -> Any:
     r"""``square(x)``: x times x.
 
     Where it has no value, or a kink: |
@@ -1551,7 +1551,7 @@ def square(x: Formula) -> Number | Term:
 def min(*values: Real) -> Number: ...  # type: ignore[overload-overlap]
 @overload
 def min(*values: Formula) -> Term: ...
-def min(*values: Formula) -> Number | Term:
+def min(*values: Formula) -> Any:
     r"""``min(x, ..)``: the smallest, the largest of any number.
 
     Where it has no value, or a kink: kinks at ties.
@@ -1567,7 +1567,7 @@ def min(*values: Formula) -> Number | Term:
 def max(*values: Real) -> Number: ...  # type: ignore[overload-overlap]
 @overload
 def max(*values: Formula) -> Term: ...
-def max(*values: Formula) -> Number | Term:
+def max(*values: Formula) -> Any:
     r"""``max(x, ..)``: the smallest, the largest of any number.
 
     Where it has no value, or a kink: kinks at ties.
@@ -1587,7 +1587,7 @@ def clamp(x: Real, low: Term, high: Formula) -> Term: ...
 def clamp(x: Real, low: Real, high: Term) -> Term: ...
 @overload
 def clamp(x: Real, low: Real, high: Real) -> Number: ...
-def clamp(x: Formula, low: Formula, high: Formula) -> Number | Term:
+def clamp(x: Formula, low: Formula, high: Formula) -> Any:
     r"""``clamp(x, low, high)``: x, but not below ``low`` and not above ``high``.
 
     Where it has no value, or a kink: kinks at the limits.
@@ -1607,7 +1607,7 @@ def mix(a: Real, b: Term, t: Formula) -> Term: ...
 def mix(a: Real, b: Real, t: Term) -> Term: ...
 @overload
 def mix(a: Real, b: Real, t: Real) -> Number: ...
-def mix(a: Formula, b: Formula, t: Formula) -> Number | Term:
+def mix(a: Formula, b: Formula, t: Formula) -> Any:
     r"""``mix(a, b, t)``: from a to b as t goes from 0 to 1.
 
     Where it has no value, or a kink: |
@@ -1626,7 +1626,7 @@ def step(edge: Term, x: Formula) -> Term: ...
 def step(edge: Real, x: Term) -> Term: ...
 @overload
 def step(edge: Real, x: Real) -> Number: ...
-def step(edge: Formula, x: Formula) -> Number | Term:
+def step(edge: Formula, x: Formula) -> Any:
     r"""``step(edge, x)``: 0 where x is below the edge, else 1.
 
     Where it has no value, or a kink: a jump.
@@ -1642,7 +1642,7 @@ def step(edge: Formula, x: Formula) -> Number | Term:
 def length(*values: Real) -> Number: ...  # type: ignore[overload-overlap]
 @overload
 def length(*values: Formula) -> Term: ...
-def length(*values: Formula) -> Number | Term:
+def length(*values: Formula) -> Any:
     r"""``length(x, ..)``: the root of the sum of squares, of any number.
 
     Where it has no value, or a kink: its derivative at 0 is 0.
@@ -1660,7 +1660,7 @@ def pow(x: Term, y: Formula) -> Term: ...
 def pow(x: Real, y: Term) -> Term: ...
 @overload
 def pow(x: Real, y: Real) -> Number: ...
-def pow(x: Formula, y: Formula) -> Number | Term:
+def pow(x: Formula, y: Formula) -> Any:
     r"""``pow(x, y)``: powers. A whole exponent without parameters and coordinates, as ``2`` or
     ``sqrt(9)``, from -1024 to 1024, but for 0, is a chain of products and takes any sign.
 
@@ -1703,10 +1703,10 @@ class ModelMembers:
             high: any number, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).clamp(0.25, 0.25))
+        >>> print(jbt.point(radius=1).clamp(0.25, 0.75))
         jbt 1
         iso 0.5
-        clamp low 0.25 high 0.25 {
+        clamp low 0.25 high 0.75 {
             point { radius 1 }
         }
         """
@@ -1722,10 +1722,10 @@ class ModelMembers:
             thickness: a number > 0, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).shell(0.5))
+        >>> print(jbt.point(radius=1).shell(0.25))
         jbt 1
         iso 0.5
-        shell 0.5 {
+        shell 0.25 {
             point { radius 1 }
         }
         """
@@ -1773,10 +1773,10 @@ class ModelMembers:
             degrees: any number, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).rotate("y", 0.25))
+        >>> print(jbt.point(radius=1).rotate("y", 0.75))
         jbt 1
         iso 0.5
-        rotate axis (0 1 0) degrees 0.25 { point { radius 1 } }
+        rotate axis (0 1 0) degrees 0.75 { point { radius 1 } }
         """
         return apply(self, "map", "rotate", [axis, degrees])
 
@@ -1790,10 +1790,10 @@ class ModelMembers:
             radians: any number, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).rotate_radians("y", 0.25))
+        >>> print(jbt.point(radius=1).rotate_radians("y", 0.75))
         jbt 1
         iso 0.5
-        rotate axis (0 1 0) radians 0.25 { point { radius 1 } }
+        rotate axis (0 1 0) radians 0.75 { point { radius 1 } }
         """
         return apply(self, "map", "rotate_radians", [axis, radians])
 
@@ -1848,10 +1848,10 @@ class ModelMembers:
             by: any number, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).stretch("y", 0.25))
+        >>> print(jbt.point(radius=1).stretch("y", 0.75))
         jbt 1
         iso 0.5
-        stretch axis (0 1 0) by 0.25 { point { radius 1 } }
+        stretch axis (0 1 0) by 0.75 { point { radius 1 } }
         """
         return apply(self, "map", "stretch", [axis, by])
 
@@ -1893,10 +1893,10 @@ class ModelMembers:
             rate: radians for each unit of length; any number, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).twist("x", rate=0.25))
+        >>> print(jbt.point(radius=1).twist("x", rate=0.75))
         jbt 1
         iso 0.5
-        twist axis x rate 0.25 { point { radius 1 } }
+        twist axis x rate 0.75 { point { radius 1 } }
         """
         return apply(self, "warp", "twist", [axis, rate])
 
@@ -1914,10 +1914,10 @@ class ModelMembers:
             end: the scale at the second; a number >= 0, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).taper("x", from_=0.25, to=0.25, start=0.75, end=0.75))
+        >>> print(jbt.point(radius=1).taper("x", from_=0.75, to=1.25, start=1.75, end=2.25))
         jbt 1
         iso 0.5
-        taper axis x from 0.25 to 0.25 start 0.75 end 0.75 { point { radius 1 } }
+        taper axis x from 0.75 to 1.25 start 1.75 end 2.25 { point { radius 1 } }
         """
         return apply(self, "warp", "taper", [axis, from_, to, start, end])
 
@@ -1943,10 +1943,10 @@ class ModelMembers:
             center: the place on the spine that stays; any number, default 0.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).bend("x", rate=0.25, from_=0.25, to=0.25, center=0.25))
+        >>> print(jbt.point(radius=1).bend("x", rate=0.75, from_=1.25, to=1.75, center=2.25))
         jbt 1
         iso 0.5
-        bend axis x rate 0.25 from 0.25 to 0.25 center 0.25 { point { radius 1 } }
+        bend axis x rate 0.75 from 1.25 to 1.75 center 2.25 { point { radius 1 } }
         """
         return apply(self, "warp", "bend", [axis, rate, from_, to, center])
 
@@ -1980,10 +1980,10 @@ class ModelMembers:
             count: how many there are, 0 for no end; a whole number >= 0, default 0.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).repeat("x", spacing=0.5, count=3))
+        >>> print(jbt.point(radius=1).repeat("x", spacing=0.75, count=3))
         jbt 1
         iso 0.5
-        repeat axis x spacing 0.5 count 3 { point { radius 1 } }
+        repeat axis x spacing 0.75 count 3 { point { radius 1 } }
         """
         return apply(self, "warp", "repeat", [axis, spacing, count])
 
@@ -2018,10 +2018,10 @@ class ModelMembers:
             radius: how far around ``to`` anything moves; a number > 0, required.
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).space_map((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 0.5))
+        >>> print(jbt.point(radius=1).space_map((0.1, 0.2, 0.3), (0.1, 0.2, 0.4), 1.25))
         jbt 1
         iso 0.5
-        space_map from (0.1 0.2 0.3) to (0.1 0.2 0.4) radius 0.5 { point { radius 1 } }
+        space_map from (0.1 0.2 0.3) to (0.1 0.2 0.4) radius 1.25 { point { radius 1 } }
         """
         return apply(self, "warp", "space_map", [from_, to, radius])
 
@@ -2039,9 +2039,9 @@ class ModelMembers:
             center: the point about which it is scaled and turned; 3 numbers, default (0, 0, 0).
 
         >>> import jbt
-        >>> print(jbt.point(radius=1).deform((0.1, 0.2, 0.3), "y", 0.25, (0.1, 0.2, 0.6), (0.1, 0.2, 0.7)))
+        >>> print(jbt.point(radius=1).deform((0.1, 0.2, 0.3), "y", 1.25, (0.1, 0.2, 0.6), (0.1, 0.2, 0.7)))
         jbt 1
         iso 0.5
-        deform by (0.1 0.2 0.3) axis (0 1 0) degrees 0.25 size (0.1 0.2 0.6) center (0.1 0.2 0.7) { point { radius 1 } }
+        deform by (0.1 0.2 0.3) axis (0 1 0) degrees 1.25 size (0.1 0.2 0.6) center (0.1 0.2 0.7) { point { radius 1 } }
         """
         return apply(self, "warp", "deform", [by, axis, degrees, size, center])

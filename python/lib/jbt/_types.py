@@ -1,4 +1,4 @@
-"""Types of arguments. At run time anything of this kind will do: NumPy's scalars and arrays, lists, tuples."""
+"""Types of arguments. At run time anything of the kind will do: numbers and arrays of NumPy, lists, tuples."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Region: TypeAlias = Union[Sequence[Sequence[float]], "NDArray[Any]"]
 #: The path of a file.
 Path: TypeAlias = Union[str, "PathLike[str]"]
 #: Who is told how far work is: a callable that takes a number from 0 to 1, True for a bar of tqdm, or a bar.
-Progress: TypeAlias = Union[Callable[[float], object], bool, Any, None]
+Progress: TypeAlias = Callable[[float], object] | bool | Any | None
 
 Floats: TypeAlias = "NDArray[np.float32]"
 Doubles: TypeAlias = "NDArray[np.float64]"
