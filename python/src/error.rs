@@ -77,8 +77,11 @@ fn limit(py: Python<'_>, text: String) -> PyErr {
 fn system(error: &dyn Classified) -> PyErr {
     let mut cause: Option<&(dyn Error + 'static)> = error.source();
     while let Some(one) = cause {
-        if let Some(number) = one.downcast_ref::<io::Error>().and_then(io::Error::raw_os_error) {
-            return PyOSError::new_err((number, shown(error)));
+        if let Some(refused) = one.downcast_ref::<io::Error>() {
+            return match refused.raw_os_error() {
+                Some(number) => PyOSError::new_err((number, shown(error))),
+                None => io::Error::new(refused.kind(), shown(error)).into(),
+            };
         }
         cause = one.source();
     }

@@ -25,8 +25,10 @@ use crate::work::{Effort, lock, pool};
 const PART: usize = 4096;
 /// Points that become planes at once.
 const TRANSPOSED: usize = 512;
-/// Points of the first piece.
-const FIRST: usize = 1 << 16;
+/// Points of the smallest piece, for one thread.
+const LEAST: usize = 64;
+/// Distances to skeletons of the first piece, which are one for a point at least: some milliseconds.
+const FIRST: u64 = 1 << 23;
 /// How long a piece should take.
 const PIECE: [Duration; 2] = [Duration::from_millis(8), Duration::from_millis(32)];
 
@@ -162,14 +164,18 @@ impl Evaluator {
         let mut rows: Vec<&mut [f32]> = whole.chunks_exact_mut(count).collect();
         let pool = (threads != Some(1) && count > PART).then(|| pool(py, threads)).transpose()?;
         let work = PointWork { evaluator: &evaluator, columns, nan };
-        let (mut start, mut size) = (0, FIRST);
+        let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads());
+        let least = LEAST * threads;
+        // Other work of a point takes as long as some distances.
+        let first = FIRST / evaluator.evaluations_per_point().saturating_add(64);
+        let (mut start, mut size) = (0, least.max(first as usize * threads));
         while start < count {
             let piece = start..count.min(start + size);
             let answers: Vec<&mut [f32]> = rows.iter_mut().map(|row| split(row, piece.len())).collect();
             let begun = Instant::now();
             let done = py.detach(|| match &pool {
                 None => work.part(piece.clone(), answers),
-                Some(pool) => pool.install(|| work.parts(piece.clone(), answers)),
+                Some(pool) => pool.install(|| work.parts(piece.clone(), threads, answers)),
             });
             done.map_err(|failed| match failed {
                 Failed::Eval(error) => crate::error::raised(py, &error),
@@ -188,7 +194,7 @@ impl Evaluator {
                 if took < PIECE[0] {
                     size *= 2;
                 } else if took > PIECE[1] {
-                    size = (size / 2).max(PART);
+                    size = (size / 2).max(least);
                 }
             }
         }
@@ -213,12 +219,18 @@ struct PointWork<'a> {
 
 impl PointWork<'_> {
     /// The answers at a range of points, on all threads.
-    fn parts(&self, points: Range<usize>, mut answers: Vec<&mut [f32]>) -> Result<(), Failed> {
+    fn parts(
+        &self,
+        points: Range<usize>,
+        threads: usize,
+        mut answers: Vec<&mut [f32]>,
+    ) -> Result<(), Failed> {
+        let size = points.len().div_ceil(threads).next_multiple_of(LEAST).min(PART);
         let parts: Vec<(Range<usize>, Vec<&mut [f32]>)> = points
             .clone()
-            .step_by(PART)
+            .step_by(size)
             .map(|start| {
-                let part = start..points.end.min(start + PART);
+                let part = start..points.end.min(start + size);
                 let rows = answers.iter_mut().map(|plane| split(plane, part.len())).collect();
                 (part, rows)
             })

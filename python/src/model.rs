@@ -574,7 +574,9 @@ impl Model {
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
-        other.cast::<Self>().is_ok_and(|other| other.get().0.model == self.0.model)
+        // A tree remembers parameters that nobody has declared.
+        let whole = |model: &InnerModel| InnerModel { parameters: model.all_parameters(), ..model.clone() };
+        other.cast::<Self>().is_ok_and(|other| whole(&other.get().0.model) == whole(&self.0.model))
     }
 }
 

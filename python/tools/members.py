@@ -54,7 +54,6 @@ KINDS: dict[str, tuple[str, str, str]] = {
 
 HEAD = '''"""What there is to build with. tools/members.py wrote it from the lists of Rust and docs/."""
 
-# ruff: noqa: E501
 # fmt: off
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ from typing import Any, final, overload
 import numpy as np
 from numpy.typing import NDArray
 
+__all__: list[str]
 __version__: str
 
 _Field = tuple[str, str, str, list[str], str | None]

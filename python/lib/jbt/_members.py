@@ -1,6 +1,5 @@
 """What there is to build with. tools/members.py wrote it from the lists of Rust and docs/."""
 
-# ruff: noqa: E501
 # fmt: off
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Types of arguments. At run time anything of the kind will do: numbers and arrays of NumPy, lists, tuples."""
+"""Types of arguments. At run time anything of the kind will do: numbers and arrays of NumPy, lists."""
 
 from __future__ import annotations
 
