@@ -7,7 +7,8 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::model::{Falloff, Model};
+use crate::build::PyFalloff;
+use crate::model::PyModel;
 
 /// The arrays of particles: one number for all, or one for each.
 struct Particles {
@@ -23,7 +24,7 @@ fn of<T: Copy>(all: &[T], index: usize) -> T {
 }
 
 /// The tree of particles.
-fn cloud(particles: &Particles, falloff: &Falloff) -> Tree {
+fn cloud(particles: &Particles, falloff: &PyFalloff) -> Tree {
     let leaf = |index: usize| {
         let written = Written::Primitive {
             skeleton: SkeletonKind::Point,
@@ -64,8 +65,8 @@ pub(crate) fn points(
     radii: PyReadonlyArray1<'_, f64>,
     strengths: PyReadonlyArray1<'_, f64>,
     colors: Option<PyReadonlyArray2<'_, f64>>,
-    falloff: &Bound<'_, Falloff>,
-) -> PyResult<Model> {
+    falloff: &Bound<'_, PyFalloff>,
+) -> PyResult<PyModel> {
     let particles = Particles {
         places: triples(&places),
         radii: radii.as_array().to_vec(),
@@ -79,5 +80,5 @@ pub(crate) fn points(
         return Err(PyValueError::new_err("expected one number for all particles, or one for each"));
     }
     let falloff = falloff.get().clone();
-    Ok(py.detach(move || Model::of(cloud(&particles, &falloff))))
+    Ok(py.detach(move || PyModel::of(cloud(&particles, &falloff))))
 }

@@ -13,29 +13,29 @@ use pyo3::types::PyDict;
 
 use crate::error::{OrRaise as _, refused};
 use crate::mesh::{fineness, matrix};
-use crate::model::Model;
+use crate::model::PyModel;
 use crate::work::Effort;
 
 /// A file could not be written.
 #[derive(Debug)]
-pub(crate) struct WriteError {
+pub(crate) struct FileError {
     pub(crate) path: PathBuf,
     pub(crate) source: io::Error,
 }
 
-impl std::fmt::Display for WriteError {
+impl std::fmt::Display for FileError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:?} cannot be written", self.path)
     }
 }
 
-impl std::error::Error for WriteError {
+impl std::error::Error for FileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.source)
     }
 }
 
-impl Classified for WriteError {
+impl Classified for FileError {
     fn kind(&self) -> ErrorKind {
         ErrorKind::System
     }
@@ -45,16 +45,16 @@ impl Classified for WriteError {
 pub(crate) fn written(
     path: PathBuf,
     write: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
-) -> Result<(), WriteError> {
+) -> Result<(), FileError> {
     let done = AtomicFile::create(&path, true).and_then(|mut file| {
         write(&mut file)?;
         file.finish()
     });
-    done.map_err(|source| WriteError { path, source })
+    done.map_err(|source| FileError { path, source })
 }
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// The contour in a plane: a dictionary. With a path it is also written as SVG.
     #[allow(clippy::too_many_arguments)]
     fn contour<'py>(

@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use jbt::{CheckedTree, Counters, EvalError, Evaluator as Inner};
+use jbt::{CheckedTree, Counters, EvalError, Evaluator};
 use numpy::{PyReadwriteArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -33,40 +33,40 @@ const FIRST: u64 = 1 << 23;
 const PIECE: [Duration; 2] = [Duration::from_millis(8), Duration::from_millis(32)];
 
 /// What answers a query at points. Threads may share it.
-#[pyclass(frozen, module = "jbt._jbt")]
-pub(crate) struct Evaluator {
+#[pyclass(frozen, module = "jbt._jbt", name = "Evaluator")]
+pub(crate) struct PyEvaluator {
     /// What is used at present: an update puts another one in its place.
-    present: Mutex<Present>,
+    present: Mutex<PresentEvaluator>,
 }
 
 #[derive(Clone)]
-struct Present {
-    evaluator: Arc<Inner>,
+struct PresentEvaluator {
+    evaluator: Arc<Evaluator>,
     tree: CheckedTree,
     /// What earlier ones did.
     done: [u64; 6],
 }
 
 /// Why points were not evaluated.
-enum Failed {
+enum PointsError {
     Eval(EvalError),
     /// A coordinate of this point is NaN.
     NotANumber(usize),
 }
 
-impl From<EvalError> for Failed {
+impl From<EvalError> for PointsError {
     fn from(error: EvalError) -> Self {
         Self::Eval(error)
     }
 }
 
-impl Evaluator {
-    pub(crate) fn new(evaluator: Inner, tree: CheckedTree) -> Self {
+impl PyEvaluator {
+    pub(crate) fn new(evaluator: Evaluator, tree: CheckedTree) -> Self {
         let evaluator = Arc::new(evaluator);
-        Self { present: Mutex::new(Present { evaluator, tree, done: [0; 6] }) }
+        Self { present: Mutex::new(PresentEvaluator { evaluator, tree, done: [0; 6] }) }
     }
 
-    fn present(&self) -> Present {
+    fn present(&self) -> PresentEvaluator {
         lock(&self.present).clone()
     }
 }
@@ -83,7 +83,7 @@ fn numbers(counters: &Counters) -> [u64; 6] {
 }
 
 #[pymethods]
-impl Evaluator {
+impl PyEvaluator {
     /// Names of the planes: `field`, `gx`, `gy`, `gz`, `color.r`, ...
     fn names(&self) -> Vec<String> {
         self.present().evaluator.layout().names().to_vec()
@@ -122,20 +122,21 @@ impl Evaluator {
 
     /// What it has done: calls, points, lanes, evaluations, pruned and avoided ones.
     fn counters(&self) -> [u64; 6] {
-        let Present { evaluator, done, .. } = self.present();
+        let PresentEvaluator { evaluator, done, .. } = self.present();
         let now = numbers(&evaluator.counters());
         std::array::from_fn(|index| now[index] + done[index])
     }
 
     /// Takes other values of parameters.
     fn update(&self, py: Python<'_>, settings: Vec<(String, f64)>) -> PyResult<()> {
-        let Present { evaluator, tree, .. } = self.present();
-        let borrowed: Vec<(&str, f64)> = settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let PresentEvaluator { evaluator, tree, .. } = self.present();
+        let borrowed: Vec<(&str, f64)> =
+            settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let tree = tree.with_parameters(&borrowed).or_raise(py)?;
         let (before, edited) = (Arc::clone(&evaluator), tree.clone());
         let updated = Effort::quiet(py).run(move |_| before.updated(&edited))?;
         let done = self.counters();
-        *lock(&self.present) = Present { evaluator: Arc::new(updated), tree, done };
+        *lock(&self.present) = PresentEvaluator { evaluator: Arc::new(updated), tree, done };
         Ok(())
     }
 
@@ -178,8 +179,8 @@ impl Evaluator {
                 Some(pool) => pool.install(|| work.parts(piece.clone(), threads, answers)),
             });
             done.map_err(|failed| match failed {
-                Failed::Eval(error) => crate::error::raised(py, &error),
-                Failed::NotANumber(index) => {
+                PointsError::Eval(error) => crate::error::raised(py, &error),
+                PointsError::NotANumber(index) => {
                     let [x, y, z] = work.columns.map(|column| column.at(index));
                     refused(format!(
                         "points: point {index} is ({x}, {y}, {z}): expected numbers; \
@@ -211,7 +212,7 @@ fn split<'s>(plane: &mut &'s mut [f32], count: usize) -> &'s mut [f32] {
 
 /// What is evaluated where.
 struct PointWork<'a> {
-    evaluator: &'a Inner,
+    evaluator: &'a Evaluator,
     columns: [Column<'a>; 3],
     /// Whether points with NaN are evaluated.
     nan: bool,
@@ -224,7 +225,7 @@ impl PointWork<'_> {
         points: Range<usize>,
         threads: usize,
         mut answers: Vec<&mut [f32]>,
-    ) -> Result<(), Failed> {
+    ) -> Result<(), PointsError> {
         let size = points.len().div_ceil(threads).next_multiple_of(LEAST).min(PART);
         let parts: Vec<(Range<usize>, Vec<&mut [f32]>)> = points
             .clone()
@@ -239,7 +240,7 @@ impl PointWork<'_> {
     }
 
     /// The answers at a range of points.
-    fn part(&self, points: Range<usize>, mut answers: Vec<&mut [f32]>) -> Result<(), Failed> {
+    fn part(&self, points: Range<usize>, mut answers: Vec<&mut [f32]>) -> Result<(), PointsError> {
         let origin = self.evaluator.origin();
         if let Some(planes) = planes(&self.columns, origin) {
             let planes = planes.map(|plane| &plane[points.clone()]);
@@ -262,11 +263,11 @@ impl PointWork<'_> {
     }
 
     /// The field is NaN where a coordinate is, and nowhere else.
-    fn judge(&self, start: usize, field: &[f32]) -> Result<(), Failed> {
+    fn judge(&self, start: usize, field: &[f32]) -> Result<(), PointsError> {
         if self.nan {
             return Ok(());
         }
         let found = field.iter().position(|value| value.is_nan());
-        found.map_or(Ok(()), |index| Err(Failed::NotANumber(start + index)))
+        found.map_or(Ok(()), |index| Err(PointsError::NotANumber(start + index)))
     }
 }

@@ -15,9 +15,9 @@ pub(crate) fn field_value(field: &Field, given: &Bound<'_, PyAny>) -> PyResult<F
     let name = field.name;
     if given.is_none() {
         let default = field.default.clone();
-        return default.map(FieldNumber::from).ok_or_else(|| {
-            PyTypeError::new_err(format!("{name}: a value is required"))
-        });
+        return default
+            .map(FieldNumber::from)
+            .ok_or_else(|| PyTypeError::new_err(format!("{name}: a value is required")));
     }
     match field.kind {
         FieldKind::Real

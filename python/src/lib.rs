@@ -6,10 +6,11 @@
 //! jbt (Rust)   everything else
 //! ```
 //!
-//! Nothing here has a name that users call, but for classes that have no Python part ([`number::Number`],
-//! [`number::Term`]). Errors of jbt become exceptions in one place ([`error`]), long work and threads have
+//! Nothing here has a name that users call, but for classes that have no Python part ([`number::PyNumber`],
+//! [`number::PyTerm`]). Errors of jbt become exceptions in one place ([`error`]), long work and threads have
 //! one door ([`work`]). Whatever takes time runs without the interpreter's lock.
 
+mod build;
 mod cloud;
 mod columns;
 mod contour;
@@ -17,6 +18,7 @@ mod error;
 mod evaluator;
 mod fields;
 mod members;
+mod merge;
 mod mesh;
 mod model;
 mod number;
@@ -30,17 +32,19 @@ mod work;
 #[pyo3::pymodule]
 mod _jbt {
     #[pymodule_export]
+    use crate::build::{PyFalloff, PyPattern};
+    #[pymodule_export]
     use crate::cloud::points;
     #[pymodule_export]
-    use crate::evaluator::Evaluator;
+    use crate::evaluator::PyEvaluator;
     #[pymodule_export]
-    use crate::members::{engines, functions, mesh_formats, members, scene_formats, views};
+    use crate::members::{engines, functions, members, mesh_formats, scene_formats, views};
     #[pymodule_export]
     use crate::mesh::save_mesh;
     #[pymodule_export]
-    use crate::model::{Falloff, Model, Pattern};
+    use crate::model::PyModel;
     #[pymodule_export]
-    use crate::number::{Number, Term, call, coordinate, falloff_of};
+    use crate::number::{PyNumber, PyTerm, call, coordinate, falloff_of};
     #[pymodule_export]
     use crate::picture::encode_png;
     #[pymodule_export]

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::refused;
-use crate::model::{Model, engine_of};
+use crate::model::{PyModel, engine_of};
 use crate::work::Effort;
 
 /// How fine a lattice is: by its cell, or by cells along the longest side.
@@ -53,7 +53,7 @@ pub(crate) fn matrix<'py, T: numpy::Element>(
 }
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// The surface as triangles: a dictionary of arrays and of what it took.
     #[allow(clippy::too_many_arguments)]
     fn mesh<'py>(
@@ -149,9 +149,9 @@ pub(crate) fn save_mesh(
     };
     let word = |name: &str, given: &str, error: String| refused(format!("{name}: {given:?}: {error}"));
     let format = match format {
-        Some(given) => Some(
-            Format::from_str(given).map_err(|error| word("format", given, error.to_string()))?,
-        ),
+        Some(given) => {
+            Some(Format::from_str(given).map_err(|error| word("format", given, error.to_string()))?)
+        }
         None => Format::of(&path),
     };
     let options = ExportOptions {

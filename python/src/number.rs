@@ -2,43 +2,44 @@
 
 use jbt_model::builder as build;
 use jbt_model::function::Function;
-use jbt_model::number::{Binary, Number as Inner, Step};
-use jbt_model::term::Term as InnerTerm;
+use jbt_model::number::{Binary, Number, Step};
+use jbt_model::term::Term;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
+use crate::build::PyFalloff;
 use crate::error::{expected, refused};
-use crate::model::{Falloff, Model};
+use crate::model::PyModel;
 
 /// A number that may depend on named parameters.
-#[pyclass(frozen, module = "jbt")]
+#[pyclass(frozen, module = "jbt", name = "Number")]
 #[derive(Clone)]
-pub(crate) struct Number(pub(crate) Inner);
+pub(crate) struct PyNumber(pub(crate) Number);
 
 /// A part of the formula of a field.
-#[pyclass(frozen, module = "jbt")]
+#[pyclass(frozen, module = "jbt", name = "Term")]
 #[derive(Clone)]
-pub(crate) struct Term {
-    pub(crate) inner: InnerTerm,
+pub(crate) struct PyTerm {
+    pub(crate) inner: Term,
     /// The models whose fields it asks for, as far as they say more than their trees.
-    pub(crate) models: Vec<Model>,
+    pub(crate) models: Vec<PyModel>,
 }
 
 /// What a formula is made of.
-enum Operand {
-    Number(Inner),
-    Term(Term),
+enum FormulaPart {
+    Number(Number),
+    Term(PyTerm),
 }
 
-impl Term {
+impl PyTerm {
     /// A formula that asks for no fields.
-    pub(crate) fn plain(inner: InnerTerm) -> Self {
+    pub(crate) fn plain(inner: Term) -> Self {
         Self { inner, models: Vec::new() }
     }
 
     /// A formula of these.
-    fn of(operands: Vec<Self>, make: impl FnOnce(Vec<InnerTerm>) -> InnerTerm) -> Self {
-        let (mut inner, mut models) = (Vec::new(), Vec::<Model>::new());
+    fn of(operands: Vec<Self>, make: impl FnOnce(Vec<Term>) -> Term) -> Self {
+        let (mut inner, mut models) = (Vec::new(), Vec::<PyModel>::new());
         for operand in operands {
             inner.push(operand.inner);
             for model in operand.models {
@@ -51,69 +52,65 @@ impl Term {
     }
 }
 
-impl Operand {
+impl FormulaPart {
     fn of(value: &Bound<'_, PyAny>) -> Option<Self> {
-        if let Ok(term) = value.cast::<Term>() {
+        if let Ok(term) = value.cast::<PyTerm>() {
             return Some(Self::Term(term.get().clone()));
         }
         number(value).map(Self::Number)
     }
 
-    fn term(self) -> Term {
+    fn term(self) -> PyTerm {
         match self {
-            Self::Number(number) => Term::plain(number.into()),
+            Self::Number(number) => PyTerm::plain(number.into()),
             Self::Term(term) => term,
         }
     }
 
     fn give(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         match self {
-            Self::Number(number) => Ok(Py::new(py, Number(number))?.into_any()),
+            Self::Number(number) => Ok(Py::new(py, PyNumber(number))?.into_any()),
             Self::Term(term) => Ok(Py::new(py, term)?.into_any()),
         }
     }
 }
 
 /// A number as anything of Python's that is one; no truth value, no text.
-pub(crate) fn number(value: &Bound<'_, PyAny>) -> Option<Inner> {
-    if let Ok(number) = value.cast::<Number>() {
+pub(crate) fn number(value: &Bound<'_, PyAny>) -> Option<Number> {
+    if let Ok(number) = value.cast::<PyNumber>() {
         return Some(number.get().0.clone());
     }
     if value.is_instance_of::<pyo3::types::PyBool>() || value.is_instance_of::<pyo3::types::PyString>() {
         return None;
     }
-    value.extract::<f64>().ok().map(Inner::from)
+    value.extract::<f64>().ok().map(Number::from)
 }
 
 /// A number that has to be one.
-pub(crate) fn number_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Inner> {
+pub(crate) fn number_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Number> {
     number(value).ok_or_else(|| expected(name, "a number or a jbt.Number", value))
 }
 
 /// A formula that has to be one.
-pub(crate) fn term_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Term> {
-    let operand = Operand::of(value);
-    operand.map(Operand::term).ok_or_else(|| expected(name, "a number or a jbt.Term", value))
+pub(crate) fn term_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PyTerm> {
+    let operand = FormulaPart::of(value);
+    operand.map(FormulaPart::term).ok_or_else(|| expected(name, "a number or a jbt.Term", value))
 }
 
 /// Two operands of an operator of Python's; `None` leaves it to the other side.
-fn binary(
-    py: Python<'_>,
-    operator: Binary,
-    sides: [&Bound<'_, PyAny>; 2],
-) -> PyResult<Py<PyAny>> {
-    let [Some(left), Some(right)] = sides.map(Operand::of) else { return Ok(py.NotImplemented()) };
+fn binary(py: Python<'_>, operator: Binary, sides: [&Bound<'_, PyAny>; 2]) -> PyResult<Py<PyAny>> {
+    let [Some(left), Some(right)] = sides.map(FormulaPart::of) else { return Ok(py.NotImplemented()) };
     let made = match (left, right) {
-        (Operand::Number(left), Operand::Number(right)) => {
-            Operand::Number(Inner::of_step(Step::Binary(operator), &[&left, &right]))
+        (FormulaPart::Number(left), FormulaPart::Number(right)) => {
+            FormulaPart::Number(Number::of_step(Step::Binary(operator), &[&left, &right]))
         }
-        (left, right) => Operand::Term(term_binary(operator, left.term(), right.term())),
+        (left, right) => FormulaPart::Term(term_binary(operator, left.term(), right.term())),
     };
     made.give(py)
 }
 
-fn term_binary(operator: Binary, left: Term, right: Term) -> Term {
-    let made = |mut sides: Vec<InnerTerm>| {
+fn term_binary(operator: Binary, left: PyTerm, right: PyTerm) -> PyTerm {
+    let made = |mut sides: Vec<Term>| {
         let (right, left) = (sides.remove(1), sides.remove(0));
         match operator {
             Binary::Add => left + right,
@@ -123,7 +120,7 @@ fn term_binary(operator: Binary, left: Term, right: Term) -> Term {
             Binary::Power => left.powf(right),
         }
     };
-    Term::of(vec![left, right], made)
+    PyTerm::of(vec![left, right], made)
 }
 
 /// The operators of Python of a class, from `+` to `**`.
@@ -201,7 +198,7 @@ macro_rules! arithmetic {
     };
 }
 
-arithmetic! { Number, |number| Self(-&number.0), {
+arithmetic! { PyNumber, |number| Self(-&number.0), {
     /// A parameter with this name and default.
     #[staticmethod]
     fn parameter(name: &str, default: f64) -> Self {
@@ -235,7 +232,7 @@ arithmetic! { Number, |number| Self(-&number.0), {
     }
 } }
 
-arithmetic! { Term, |term| Self { inner: -term.inner.clone(), models: term.models.clone() }, {
+arithmetic! { PyTerm, |term| Self { inner: -term.inner.clone(), models: term.models.clone() }, {
     fn __repr__(&self) -> String {
         "<jbt.Term>".to_owned()
     }
@@ -243,11 +240,11 @@ arithmetic! { Term, |term| Self { inner: -term.inner.clone(), models: term.model
 
 /// A coordinate of the point, by the index of its axis.
 #[pyfunction]
-pub(crate) fn coordinate(axis: usize) -> PyResult<Term> {
+pub(crate) fn coordinate(axis: usize) -> PyResult<PyTerm> {
     match axis {
-        0 => Ok(Term::plain(build::x())),
-        1 => Ok(Term::plain(build::y())),
-        2 => Ok(Term::plain(build::z())),
+        0 => Ok(PyTerm::plain(build::x())),
+        1 => Ok(PyTerm::plain(build::y())),
+        2 => Ok(PyTerm::plain(build::z())),
         _ => Err(refused(format!("axis: expected 0, 1 or 2, got {axis}"))),
     }
 }
@@ -255,8 +252,7 @@ pub(crate) fn coordinate(axis: usize) -> PyResult<Term> {
 /// A function of the list: of numbers a number, of anything else a formula.
 #[pyfunction]
 pub(crate) fn call(py: Python<'_>, name: &str, arguments: Vec<Bound<'_, PyAny>>) -> PyResult<Py<PyAny>> {
-    let function =
-        Function::named(name).ok_or_else(|| refused(format!("no function is called {name:?}")))?;
+    let function = Function::named(name).ok_or_else(|| refused(format!("no function is called {name:?}")))?;
     let (least, most) = function.arity();
     if !(least..=most).contains(&arguments.len()) {
         let given = arguments.len();
@@ -266,24 +262,24 @@ pub(crate) fn call(py: Python<'_>, name: &str, arguments: Vec<Bound<'_, PyAny>>)
         .iter()
         .map(|argument| {
             let what = "a number, a jbt.Number or a jbt.Term";
-            Operand::of(argument).ok_or_else(|| expected(&format!("{name}()"), what, argument))
+            FormulaPart::of(argument).ok_or_else(|| expected(&format!("{name}()"), what, argument))
         })
         .collect::<PyResult<Vec<_>>>()?;
-    if operands.iter().any(|operand| matches!(operand, Operand::Term(_))) {
-        let terms = operands.into_iter().map(Operand::term).collect();
-        return Operand::Term(Term::of(terms, |terms| InnerTerm::of_function(function, terms))).give(py);
+    if operands.iter().any(|operand| matches!(operand, FormulaPart::Term(_))) {
+        let terms = operands.into_iter().map(FormulaPart::term).collect();
+        return FormulaPart::Term(PyTerm::of(terms, |terms| Term::of_function(function, terms))).give(py);
     }
-    let numbers: Vec<Inner> = operands
+    let numbers: Vec<Number> = operands
         .into_iter()
-        .filter_map(|operand| if let Operand::Number(number) = operand { Some(number) } else { None })
+        .filter_map(|operand| if let FormulaPart::Number(number) = operand { Some(number) } else { None })
         .collect();
     let step = Step::Call(function, numbers.len() as u32);
-    Operand::Number(Inner::of_step(step, &numbers.iter().collect::<Vec<_>>())).give(py)
+    FormulaPart::Number(Number::of_step(step, &numbers.iter().collect::<Vec<_>>())).give(py)
 }
 
 /// The falloff of a distance, of which 1 is the end.
 #[pyfunction]
-pub(crate) fn falloff_of(falloff: &Bound<'_, Falloff>, distance: &Bound<'_, PyAny>) -> PyResult<Term> {
-    let Term { inner, models } = term_of("distance", distance)?;
-    Ok(Term { inner: inner.falloff(falloff.get().0.falloff()), models })
+pub(crate) fn falloff_of(falloff: &Bound<'_, PyFalloff>, distance: &Bound<'_, PyAny>) -> PyResult<PyTerm> {
+    let PyTerm { inner, models } = term_of("distance", distance)?;
+    Ok(PyTerm { inner: inner.falloff(falloff.get().0.falloff()), models })
 }

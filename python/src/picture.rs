@@ -10,13 +10,13 @@ use pyo3::types::PyBytes;
 
 use crate::error::{Refusal, refused};
 use crate::mesh::region;
-use crate::model::Model;
+use crate::model::PyModel;
 use crate::work::Effort;
 
 /// The camera and what it shows, as Python says it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Wish {
+struct PictureWish {
     size: [u32; 2],
     view: Option<String>,
     direction: Option<[f64; 3]>,
@@ -43,7 +43,7 @@ enum Shade {
     Color([u8; 3]),
 }
 
-impl Wish {
+impl PictureWish {
     fn view(&self) -> PyResult<View> {
         let named = match &self.view {
             None => View::default(),
@@ -97,12 +97,12 @@ impl Wish {
 }
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// A picture: an array of rows, columns and red, green, blue, opacity, as screens take them.
     fn render<'py>(
         &self,
         py: Python<'py>,
-        wish: Wish,
+        wish: PictureWish,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
@@ -140,7 +140,10 @@ pub(crate) fn encode_png<'py>(
     let view = pixels.as_array();
     let [height, width, channels] = [view.shape()[0], view.shape()[1], view.shape()[2]];
     if channels != 4 {
-        return Err(refused(format!("pixels: expected the shape (height, width, 4), got {:?}", view.shape())));
+        return Err(refused(format!(
+            "pixels: expected the shape (height, width, 4), got {:?}",
+            view.shape()
+        )));
     }
     let flat: Vec<u8> = view.iter().copied().collect();
     let colors: Vec<[u8; 4]> = flat.as_chunks::<4>().0.to_vec();

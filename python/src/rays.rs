@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::{Refusal, refused};
 use crate::mesh::matrix;
-use crate::model::{Model, query_of};
+use crate::model::{PyModel, query_of};
 use crate::work::Effort;
 
 /// Rays that one thread follows at once.
@@ -25,7 +25,13 @@ struct HitTable {
 }
 
 /// Follows a packet of rays, whose first one has a number.
-fn follow(tracer: &Tracer, first: usize, rays: &[Ray], tolerance: f64, all: bool) -> Result<HitTable, TraceError> {
+fn follow(
+    tracer: &Tracer,
+    first: usize,
+    rays: &[Ray],
+    tolerance: f64,
+    all: bool,
+) -> Result<HitTable, TraceError> {
     let hits = if all { tracer.all_of(rays, tolerance)? } else { tracer.first_of(rays, tolerance)? };
     let mut table = HitTable::default();
     for ray in 0..rays.len() {
@@ -41,7 +47,7 @@ fn follow(tracer: &Tracer, first: usize, rays: &[Ray], tolerance: f64, all: bool
 }
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// The hits of rays, by ray and then by t: a dictionary of arrays.
     #[allow(clippy::too_many_arguments)]
     fn trace<'py>(

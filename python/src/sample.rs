@@ -9,11 +9,11 @@ use pyo3::types::PyDict;
 
 use crate::error::Refusal;
 use crate::mesh::{fineness, region};
-use crate::model::{Model, query_of};
+use crate::model::{PyModel, query_of};
 use crate::work::Effort;
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// The answers at the points of a lattice: `(names, groups, arrays, origin, spacing)`. The arrays have an
     /// index for x, then y, then z, of which x is the fastest in memory.
     #[allow(clippy::too_many_arguments)]

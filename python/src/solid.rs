@@ -8,13 +8,13 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 
 use crate::error::{Refusal, refused};
-use crate::evaluator::Evaluator;
+use crate::evaluator::PyEvaluator;
 use crate::mesh::{fineness, region};
-use crate::model::Model;
+use crate::model::PyModel;
 use crate::work::Effort;
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// A box around the solid, in the world; `None` if it is empty. The second part says whether every side
     /// is within the tolerance.
     fn tight_bounds(
@@ -88,7 +88,10 @@ impl Model {
         let leaf = found.iter().map(|one| one.as_ref().map_or(-1, |one| i64::from(one.0))).collect();
         let share = found.iter().map(|one| one.as_ref().map_or(0.0, |one| one.1)).collect();
         let line = |span: Option<jbt::diagnostic::Span>| {
-            source.as_ref().zip(span).map_or(0, |(source, span)| source.source().position(span.start as usize).0)
+            source
+                .as_ref()
+                .zip(span)
+                .map_or(0, |(source, span)| source.source().position(span.start as usize).0)
         };
         let lines = found.iter().map(|one| one.as_ref().map_or(0, |one| line(one.3) as i64)).collect();
         let dict = PyDict::new(py);
@@ -101,9 +104,9 @@ impl Model {
     }
 
     /// What answers the field in the numbers that decide sides: as [`compile`](Self::compile) of the field.
-    fn sides(&self, py: Python<'_>) -> PyResult<Evaluator> {
+    fn sides(&self, py: Python<'_>) -> PyResult<PyEvaluator> {
         let compiled = self.compiled(py, None)?;
         let made = Effort::quiet(py).run(move |_| compiled.evaluator(Query::FIELD))?;
-        Ok(Evaluator::new(made, self.checked(py)?))
+        Ok(PyEvaluator::new(made, self.checked(py)?))
     }
 }

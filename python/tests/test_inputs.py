@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import jbt
 import numpy as np
@@ -24,7 +25,7 @@ SHAPES = r"an array of the shape \(n, 3\) or \(3, n\), or three arrays of one sh
         (np.array([["a", "b", "c"]]), TypeError, "points: .* got an array of <U1"),
         (np.zeros((4, 3), complex), TypeError, "got an array of complex128"),
         (np.zeros((4, 3), bool), TypeError, "got an array of bool"),
-        (np.zeros((4, 2)), ValueError, rf"points: expected {SHAPES}, got an array of float64 with the shape \(4, 2\)"),
+        (np.zeros((4, 2)), ValueError, rf"points: expected {SHAPES}, got an array of float64 .* \(4, 2\)"),
         (np.zeros((2, 3, 4)), ValueError, r"the shape \(2, 3, 4\)"),
         (np.zeros(5), ValueError, r"the shape \(5,\)"),
         (7, ValueError, r"the shape \(\)"),
@@ -133,11 +134,11 @@ def test_a_surface_that_leaves_the_region(peanut: jbt.Model) -> None:
         ({"cell": float("nan")}, "cell: expected a finite number"),
         ({"region": [(0, 0, 0), (0, 1, 1)]}, "region: expected finite corners"),
         ({"region": [0, 1]}, "region: expected two corners of 3 numbers"),
-        ({"engine": "gpu"}, "engine: expected one of scalar, lanes, jit, got \"gpu\""),
+        ({"engine": "gpu"}, 'engine: expected one of scalar, lanes, jit, got "gpu"'),
         ({"threads": 1000}, "threads: expected 1 to 256"),
     ],
 )
-def test_settings_of_meshes(peanut: jbt.Model, given: dict, message: str) -> None:
+def test_settings_of_meshes(peanut: jbt.Model, given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         peanut.mesh(**given)
 
@@ -150,7 +151,7 @@ def test_limits(peanut: jbt.Model) -> None:
 
 
 def test_rays_and_pictures(peanut: jbt.Model) -> None:
-    with pytest.raises(ValueError, match=r"directions: expected vectors of any length but 0, got .* at \[1\]"):
+    with pytest.raises(ValueError, match=r"directions: expected vectors of any length but 0, .* at \[1\]"):
         peanut.trace([[0, 0, 5]], [[0, 0, -1], [0, 0, 0]])
     with pytest.raises(ValueError, match=r"directions: expected the shape of origins"):
         peanut.trace(np.zeros((2, 3)), np.ones((3, 3)))

@@ -6,6 +6,7 @@ import importlib.util
 import inspect
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import jbt
 import pytest
@@ -30,7 +31,7 @@ def test_the_file_is_what_the_lists_say() -> None:
 
 
 @pytest.mark.parametrize("row", _jbt.members(), ids=lambda row: f"{row['family']}-{row['name']}")
-def test_every_member_is_there(row: dict) -> None:
+def test_every_member_is_there(row: dict[str, Any]) -> None:
     found = getattr(jbt.Model if row["takes_one"] else jbt, row["name"])
     given = inspect.signature(found).parameters
     for name, word, _, _, default in row["fields"]:

@@ -18,14 +18,15 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_a_ball_is_one() -> None:
     ball = jbt.point((1, 2, 3), surface_radius=1, color=(1, 0.5, 0))
     mesh = ball.mesh(cell=0.05)
-    assert (mesh.vertices.dtype, mesh.faces.dtype) == (np.float32, np.uint32)
+    assert mesh.vertices.dtype == np.float32
+    assert mesh.faces.dtype == np.uint32
     assert mesh.closed
     assert np.abs(np.linalg.norm(mesh.world - [1, 2, 3], axis=1) - 1).max() < 1e-5
     assert np.abs((mesh.normals * (mesh.vertices - [1, 2, 3])).sum(axis=1) - 1).max() < 1e-4
     assert mesh.volume == pytest.approx(4 / 3 * np.pi, rel=0.01)
     assert mesh.area == pytest.approx(4 * np.pi, rel=0.01)
     assert np.allclose(mesh.bounds, [[0, 1, 2], [2, 3, 4]], atol=0.01)
-    assert (mesh.colors == np.float32([1, 0.5, 0])).all()
+    assert (mesh.colors == np.array([1, 0.5, 0], np.float32)).all()
     assert mesh.srgb[0].tolist() == [255, 188, 0]
     assert mesh.spacing == 0.05
     assert mesh.info["engine"] == "jit"

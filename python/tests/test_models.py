@@ -34,7 +34,8 @@ def test_operators_are_those_of_the_text() -> None:
     }
     for word, model in words.items():
         assert model == getattr(jbt, word)(a, b)
-        assert model == jbt.loads(f"jbt 1 {word} {{ point {{ radius 1 }} point {{ at (0.5 0 0) radius 1 }} }}")
+        text = f"jbt 1 {word} {{ point {{ radius 1 }} point {{ at (0.5 0 0) radius 1 }} }}"
+        assert model == jbt.loads(text)
     assert ~a == jbt.loads("jbt 1 complement { point { radius 1 } }")
     assert sum([a, b, b]) == a + b + b
     assert jbt.union([a, b]) == jbt.union(a, b)
@@ -133,7 +134,8 @@ def test_formulas() -> None:
     assert np.isfinite(wave.within((-2, -2, -2), (2, 2, 2)).support).all()
     soft = jbt.expression(jbt.falloff_of("soft", jbt.length(jbt.x, jbt.y, jbt.z)))
     assert field(soft, 0.5, 0, 0) == pytest.approx(0.5)
-    assert field(jbt.expression(jbt.length(jbt.x, jbt.y, jbt.z)).fading("soft", 2), 1, 0, 0) == pytest.approx(0.5)
+    distance = jbt.expression(jbt.length(jbt.x, jbt.y, jbt.z))
+    assert field(distance.fading("soft", 2), 1, 0, 0) == pytest.approx(0.5)
 
 
 def test_numbers() -> None:

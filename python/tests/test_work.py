@@ -136,7 +136,7 @@ def test_processes(method: str) -> None:
         models = [jbt.point(radius=1), jbt.loads("jbt 1 point { radius 1 }")]
         faces = pool.map_async(faces_of, models).get(timeout=120)
         assert faces[0] == faces[1] > 0
-        fields = pool.map_async(field_of, [(ev, [[0, 0, 0], [0.5, 0, 0]])]).get(timeout=120)
+        fields = pool.map_async(field_of, [(ev, [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]])]).get(timeout=120)
         assert fields == [[1.0, 0.5]]
     assert mesh_of(1.0) == here
 

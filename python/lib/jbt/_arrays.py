@@ -43,10 +43,10 @@ def columns(points: Any, y: Any, z: Any) -> tuple[tuple[Column, Column, Column],
     if y is not None:
         return separate((points, y, z), expected)
     is_triple = isinstance(points, (tuple, list)) and len(points) == 3
-    if is_triple and all(isinstance(part, np.ndarray) for part in points):
-        # Three arrays of three numbers each are three points, as a list of three vectors is.
-        if not all(part.shape == (3,) for part in points):
-            return separate(tuple(points), expected)
+    shapes = [part.shape for part in points if isinstance(part, np.ndarray)] if is_triple else []
+    # Three arrays of three numbers each are three points, as a list of three vectors is.
+    if len(shapes) == 3 and shapes != [(3,)] * 3:
+        return separate(tuple(points), expected)
     array = numeric("points", points, expected)
     if array.ndim == 2 and array.shape[1] == 3:
         return (array[:, 0], array[:, 1], array[:, 2]), (array.shape[0],), True

@@ -6,7 +6,30 @@ from typing import Any, final, overload
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: list[str]
+__all__ = [
+    "Evaluator",
+    "Falloff",
+    "Model",
+    "Number",
+    "Pattern",
+    "Term",
+    "__version__",
+    "call",
+    "compile_counters",
+    "coordinate",
+    "encode_png",
+    "engines",
+    "falloff_of",
+    "functions",
+    "members",
+    "mesh_formats",
+    "points",
+    "save_mesh",
+    "scene_formats",
+    "thread_count",
+    "views",
+]
+
 __version__: str
 
 _Field = tuple[str, str, str, list[str], str | None]

@@ -143,9 +143,9 @@ class Model(ModelMembers):
     def __add__(self, other: Model) -> Model:
         return self._with("sum", other)
 
-    def __radd__(self, other: Literal[0]) -> Model:
+    def __radd__(self, other: int) -> Model:
         """`sum(models)` begins with 0."""
-        return self if isinstance(other, int) and other == 0 else NotImplemented
+        return self if other == 0 else NotImplemented
 
     def __or__(self, other: Model) -> Model:
         return self._with("union", other)
