@@ -7,7 +7,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::build::PyFalloff;
+use crate::falloff::PyFalloff;
 use crate::model::PyModel;
 
 /// The arrays of particles: one number for all, or one for each.

@@ -19,7 +19,7 @@ pub(crate) enum Coordinates<'py> {
 
 /// Coordinates that threads may read.
 #[derive(Clone, Copy)]
-pub(crate) enum Column<'a> {
+pub(crate) enum PointColumn<'a> {
     /// As kernels take them.
     Plane(&'a [f32]),
     Single(ArrayView1<'a, f32>),
@@ -34,18 +34,18 @@ impl Coordinates<'_> {
         }
     }
 
-    fn column(&self) -> Column<'_> {
+    fn column(&self) -> PointColumn<'_> {
         match self {
             Self::Single(array) => match array.as_slice() {
-                Ok(plane) => Column::Plane(plane),
-                Err(_) => Column::Single(array.as_array()),
+                Ok(plane) => PointColumn::Plane(plane),
+                Err(_) => PointColumn::Single(array.as_array()),
             },
-            Self::Double(array) => Column::Double(array.as_array()),
+            Self::Double(array) => PointColumn::Double(array.as_array()),
         }
     }
 }
 
-impl Column<'_> {
+impl PointColumn<'_> {
     /// Writes coordinates from `start` on, about an origin: moved in f64 and rounded once.
     fn copy_to(&self, start: usize, origin: f64, plane: &mut [f32]) {
         let end = start + plane.len();
@@ -77,7 +77,7 @@ fn copy(from: impl Iterator<Item = f32>, origin: f64, plane: &mut [f32]) {
 }
 
 /// The columns of points, and how many there are.
-pub(crate) fn columns<'a>(given: &'a [Coordinates<'_>; 3]) -> PyResult<([Column<'a>; 3], usize)> {
+pub(crate) fn columns<'a>(given: &'a [Coordinates<'_>; 3]) -> PyResult<([PointColumn<'a>; 3], usize)> {
     let counts = given.each_ref().map(Coordinates::count);
     if counts != [counts[0]; 3] {
         let [x, y, z] = counts;
@@ -87,15 +87,22 @@ pub(crate) fn columns<'a>(given: &'a [Coordinates<'_>; 3]) -> PyResult<([Column<
 }
 
 /// The planes as they are, if nothing has to be copied or moved.
-pub(crate) fn planes<'a>(columns: &[Column<'a>; 3], origin: ModelOrigin) -> Option<[&'a [f32]; 3]> {
+pub(crate) fn planes<'a>(columns: &[PointColumn<'a>; 3], origin: ModelOrigin) -> Option<[&'a [f32]; 3]> {
     match columns {
-        [Column::Plane(x), Column::Plane(y), Column::Plane(z)] if origin.is_world() => Some([x, y, z]),
+        [PointColumn::Plane(x), PointColumn::Plane(y), PointColumn::Plane(z)] if origin.is_world() => {
+            Some([x, y, z])
+        }
         _ => None,
     }
 }
 
 /// Writes points from `start` on into planes, about an origin.
-pub(crate) fn copy_to(columns: &[Column<'_>; 3], start: usize, origin: ModelOrigin, planes: [&mut [f32]; 3]) {
+pub(crate) fn copy_to(
+    columns: &[PointColumn<'_>; 3],
+    start: usize,
+    origin: ModelOrigin,
+    planes: [&mut [f32]; 3],
+) {
     for ((column, plane), origin) in columns.iter().zip(planes).zip(origin.point()) {
         column.copy_to(start, origin, plane);
     }

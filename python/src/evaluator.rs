@@ -17,7 +17,7 @@ use numpy::{PyReadwriteArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::columns::{Column, Coordinates, columns, copy_to, planes};
+use crate::columns::{Coordinates, PointColumn, columns, copy_to, planes};
 use crate::error::{OrRaise as _, refused};
 use crate::work::{Effort, lock, pool};
 
@@ -213,7 +213,7 @@ fn split<'s>(plane: &mut &'s mut [f32], count: usize) -> &'s mut [f32] {
 /// What is evaluated where.
 struct PointWork<'a> {
     evaluator: &'a Evaluator,
-    columns: [Column<'a>; 3],
+    columns: [PointColumn<'a>; 3],
     /// Whether points with NaN are evaluated.
     nan: bool,
 }

@@ -6,9 +6,9 @@
 //! jbt (Rust)   everything else
 //! ```
 //!
-//! Nothing here has a name that users call, but for classes that have no Python part ([`number::PyNumber`],
-//! [`number::PyTerm`]). Errors of jbt become exceptions in one place ([`error`]), long work and threads have
-//! one door ([`work`]). Whatever takes time runs without the interpreter's lock.
+//! Nothing here has a name that users call, but for classes that have no Python part (numbers and
+//! formulas). Errors of jbt become exceptions in one place (`error.rs`), long work and threads have
+//! one door (`work.rs`). Whatever takes time runs without the interpreter's lock.
 
 mod build;
 mod cloud;
@@ -16,6 +16,7 @@ mod columns;
 mod contour;
 mod error;
 mod evaluator;
+mod falloff;
 mod fields;
 mod members;
 mod merge;
@@ -26,17 +27,18 @@ mod picture;
 mod rays;
 mod sample;
 mod solid;
+mod term;
 mod work;
 
 /// The native part of `jbt`.
 #[pyo3::pymodule]
 mod _jbt {
     #[pymodule_export]
-    use crate::build::{PyFalloff, PyPattern};
-    #[pymodule_export]
     use crate::cloud::points;
     #[pymodule_export]
     use crate::evaluator::PyEvaluator;
+    #[pymodule_export]
+    use crate::falloff::{PyFalloff, PyPattern};
     #[pymodule_export]
     use crate::members::{engines, functions, members, mesh_formats, scene_formats, views};
     #[pymodule_export]
@@ -44,9 +46,11 @@ mod _jbt {
     #[pymodule_export]
     use crate::model::PyModel;
     #[pymodule_export]
-    use crate::number::{PyNumber, PyTerm, call, coordinate, falloff_of};
+    use crate::number::PyNumber;
     #[pymodule_export]
     use crate::picture::encode_png;
+    #[pymodule_export]
+    use crate::term::{PyTerm, call, coordinate, falloff_of};
     #[pymodule_export]
     use crate::work::{compile_counters, thread_count};
 

@@ -12,6 +12,9 @@ use crate::evaluator::PyEvaluator;
 use crate::number::{PyNumber, number_of};
 use crate::work::{Effort, compiler};
 
+/// A query, and evaluations of primitives for a point: by separate walks, by those that remember, by programs.
+type CountRow = (String, u64, u64, u64);
+
 /// A model, which never changes. What is found out about it is kept.
 #[pyclass(frozen, module = "jbt._jbt", name = "Model")]
 #[derive(Clone)]
@@ -216,7 +219,7 @@ impl PyModel {
 
     /// Evaluations of primitives for one point: for each query `(name, separate, cached, fused)`; and uses
     /// and instances of leaves.
-    fn counters(&self, py: Python<'_>) -> PyResult<(Vec<(String, u64, u64, u64)>, u64, u64)> {
+    fn counters(&self, py: Python<'_>) -> PyResult<(Vec<CountRow>, u64, u64)> {
         let compiled = self.compiled(py, None)?;
         Effort::quiet(py).run(move |_| -> Result<_, Refusal> {
             let statistics = jbt::statistics::Statistics::new(compiled.tree());

@@ -13,6 +13,9 @@ use crate::mesh::{fineness, region};
 use crate::model::PyModel;
 use crate::work::Effort;
 
+/// The smallest and the largest corner of a box, in the world.
+type WorldCorners = ([f64; 3], [f64; 3]);
+
 #[pymethods]
 impl PyModel {
     /// A box around the solid, in the world; `None` if it is empty. The second part says whether every side
@@ -22,7 +25,7 @@ impl PyModel {
         py: Python<'_>,
         tolerance: f32,
         bounds: Option<[[f64; 3]; 2]>,
-    ) -> PyResult<(Option<([f64; 3], [f64; 3])>, bool)> {
+    ) -> PyResult<(Option<WorldCorners>, bool)> {
         let compiled = self.compiled(py, None)?;
         let origin = compiled.origin();
         let local = region(bounds)?.map(|bounds| bounds.map(|corner| origin.rounded(corner)));

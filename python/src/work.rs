@@ -51,7 +51,7 @@ pub(crate) fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<Thre
     let mut known = lock(&POOLS);
     if known.process != std::process::id() {
         // Their threads are those of the parent: nobody may wait for them.
-        std::mem::take(&mut known.pools).into_iter().for_each(|pool| std::mem::forget(pool));
+        std::mem::take(&mut known.pools).into_iter().for_each(std::mem::forget);
         known.process = std::process::id();
     }
     if let Some((_, pool)) = known.pools.iter().find(|(count, _)| *count == threads) {

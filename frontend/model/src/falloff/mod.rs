@@ -93,8 +93,8 @@ macro_rules! falloffs {
                 match self { $( Self::$name => $name::ALIASES, )+ $( Self::$rich(_) => $rich::ALIASES, )+ }
             }
 
-            /// The name of the constructor in [`builder`](crate::builder); one without parameters is known to it by
-            /// its word.
+            /// The name of the constructor in [`builder`](crate::builder). There, one without parameters has its
+            /// word.
             #[must_use]
             pub const fn constructor(self) -> &'static str {
                 match self { $( Self::$name => stringify!($module), )+ $( Self::$rich(_) => stringify!($rich_module), )+ }
