@@ -1,4 +1,4 @@
-//! Particles from arrays: one flat sum.
+//! CloudArrays from arrays: one flat sum.
 
 use jbt::Tree;
 use jbt::tree::SkeletonKind;
@@ -11,7 +11,7 @@ use crate::falloff::PyFalloff;
 use crate::model::PyModel;
 
 /// The arrays of particles: one number for all, or one for each.
-struct Particles {
+struct CloudArrays {
     places: Vec<[f64; 3]>,
     radii: Vec<f64>,
     strengths: Vec<f64>,
@@ -24,7 +24,7 @@ fn of<T: Copy>(all: &[T], index: usize) -> T {
 }
 
 /// The tree of particles.
-fn cloud(particles: &Particles, falloff: &PyFalloff) -> Tree {
+fn cloud(particles: &CloudArrays, falloff: &PyFalloff) -> Tree {
     let leaf = |index: usize| {
         let written = Written::Primitive {
             skeleton: SkeletonKind::Point,
@@ -67,7 +67,7 @@ pub(crate) fn points(
     colors: Option<PyReadonlyArray2<'_, f64>>,
     falloff: &Bound<'_, PyFalloff>,
 ) -> PyResult<PyModel> {
-    let particles = Particles {
+    let particles = CloudArrays {
         places: triples(&places),
         radii: radii.as_array().to_vec(),
         strengths: strengths.as_array().to_vec(),

@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 use crate::error::{OrRaise as _, refused};
 use crate::mesh::{fineness, matrix};
 use crate::model::PyModel;
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 /// A file could not be written.
 #[derive(Debug)]
@@ -73,7 +73,7 @@ impl PyModel {
         let rectangle = rectangle.or_raise(py)?;
         let detail = Detail { fineness: fineness(resolution, cell)?, ..Detail::default() };
         let compiled = self.compiled(py, None)?;
-        let effort = Effort { py, threads, progress };
+        let effort = CallEffort { py, threads, progress };
         let contour = effort.run(move |watch| -> Result<Contour, SliceError> {
             let slicer = Slicer::of(&compiled, &plane, Query::ATTRIBUTES)?;
             let rectangle = rectangle.map_or_else(|| slicer.rectangle(), Ok)?;
@@ -82,7 +82,7 @@ impl PyModel {
         let dict = told(py, &contour, &plane)?;
         if let Some(path) = svg {
             let write = move |_: &_| written(path, |file| write_svg(&contour, &Style::default(), file));
-            Effort::quiet(py).run(write)?;
+            CallEffort::quiet(py).run(write)?;
         }
         Ok(dict)
     }

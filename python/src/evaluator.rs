@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use crate::columns::{Coordinates, PointColumn, columns, copy_to, planes};
 use crate::error::{OrRaise as _, refused};
-use crate::work::{Effort, lock, pool};
+use crate::work::{CallEffort, lock, pool};
 
 /// Points that one thread evaluates at once.
 const PART: usize = 4096;
@@ -134,7 +134,7 @@ impl PyEvaluator {
             settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let tree = tree.with_parameters(&borrowed).or_raise(py)?;
         let (before, edited) = (Arc::clone(&evaluator), tree.clone());
-        let updated = Effort::quiet(py).run(move |_| before.updated(&edited))?;
+        let updated = CallEffort::quiet(py).run(move |_| before.updated(&edited))?;
         let done = self.counters();
         *lock(&self.present) = PresentEvaluator { evaluator: Arc::new(updated), tree, done };
         Ok(())

@@ -1,8 +1,8 @@
 //! `jbt._jbt`: the native part of the Python package `jbt`, which says in Python what users see.
 //!
 //! ```text
-//! jbt/*.py     names, types, documentation; arguments become arrays and numbers of one kind    what users see
-//! jbt._jbt     models, evaluators, long work; arrays of NumPy are borrowed or given away      this crate
+//! jbt/*.py     names, types, documentation; arguments become arrays and numbers         what users see
+//! jbt._jbt     models, evaluators, long work; arrays are borrowed or given away      this crate
 //! jbt (Rust)   everything else
 //! ```
 //!

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::error::refused;
 use crate::model::{PyModel, engine_of};
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 /// How fine a lattice is: by its cell, or by cells along the longest side.
 pub(crate) fn fineness(resolution: Option<usize>, cell: Option<f64>) -> PyResult<Fineness> {
@@ -74,7 +74,7 @@ impl PyModel {
             ..Polygonize::default()
         };
         let compiled = self.compiled(py, engine_of(engine)?)?;
-        let effort = Effort { py, threads, progress };
+        let effort = CallEffort { py, threads, progress };
         told(py, effort.run(move |watch| watch.run(settings.with(&compiled)))?)
     }
 }
@@ -160,7 +160,7 @@ pub(crate) fn save_mesh(
             .map(|given| ColorEncoding::from_str(given).map_err(|e| word("colors", given, e.to_string())))
             .transpose()?,
     };
-    Effort::quiet(py).run(move |_| match format {
+    CallEffort::quiet(py).run(move |_| match format {
         Some(format) => save_with(&path, &mesh, format, &options),
         None => Err(ExportError::Extension { path }),
     })

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 use crate::error::{OrRaise as _, Refusal, refused};
 use crate::evaluator::PyEvaluator;
 use crate::number::{PyNumber, number_of};
-use crate::work::{Effort, compiler};
+use crate::work::{CallEffort, compiler};
 
-/// A query, and evaluations of primitives for a point: by separate walks, by those that remember, by programs.
+/// A query, and evaluations of primitives for a point: separate, cached, fused.
 type CountRow = (String, u64, u64, u64);
 
 /// A model, which never changes. What is found out about it is kept.
@@ -79,7 +79,7 @@ impl PyModel {
             return Ok(checked.clone());
         }
         let model = self.0.model.clone();
-        let checked = Effort::quiet(py).run(move |_| model.check())?;
+        let checked = CallEffort::quiet(py).run(move |_| model.check())?;
         Ok(self.0.checked.get_or_init(|| checked).clone())
     }
 
@@ -100,7 +100,7 @@ impl PyModel {
     #[staticmethod]
     fn load(py: Python<'_>, path: std::path::PathBuf, parameters: Vec<(String, f64)>) -> PyResult<Self> {
         let options = Options { parameters };
-        Ok(Self::read(Effort::quiet(py).run(move |_| Scene::load_with(path, &options))?))
+        Ok(Self::read(CallEffort::quiet(py).run(move |_| Scene::load_with(path, &options))?))
     }
 
     /// A text, as if it were a file of this name.
@@ -108,7 +108,7 @@ impl PyModel {
     fn loads(py: Python<'_>, name: String, text: Vec<u8>, parameters: Vec<(String, f64)>) -> PyResult<Self> {
         let options = Options { parameters };
         let read = move |_: &_| Scene::from_reader(&name, text.as_slice(), &options);
-        Ok(Self::read(Effort::quiet(py).run(read)?))
+        Ok(Self::read(CallEffort::quiet(py).run(read)?))
     }
 
     /// The model in the text format.
@@ -213,7 +213,7 @@ impl PyModel {
     ) -> PyResult<PyEvaluator> {
         let query = query_of(gradient, attributes);
         let compiled = self.compiled(py, engine_of(engine)?)?;
-        let made = Effort::quiet(py).run(move |_| compiled.evaluator(query))?;
+        let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(query))?;
         Ok(PyEvaluator::new(made, self.checked(py)?))
     }
 
@@ -221,7 +221,7 @@ impl PyModel {
     /// and instances of leaves.
     fn counters(&self, py: Python<'_>) -> PyResult<(Vec<CountRow>, u64, u64)> {
         let compiled = self.compiled(py, None)?;
-        Effort::quiet(py).run(move |_| -> Result<_, Refusal> {
+        CallEffort::quiet(py).run(move |_| -> Result<_, Refusal> {
             let statistics = jbt::statistics::Statistics::new(compiled.tree());
             let mut rows = Vec::new();
             for query in Query::EVERY {

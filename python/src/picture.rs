@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use crate::error::{Refusal, refused};
 use crate::mesh::region;
 use crate::model::PyModel;
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 /// The camera and what it shows, as Python says it.
 #[derive(FromPyObject)]
@@ -118,7 +118,7 @@ impl PyModel {
             ground: wish.ground,
             region: region(wish.bounds)?.map(local),
         };
-        let effort = Effort { py, threads, progress };
+        let effort = CallEffort { py, threads, progress };
         let made = effort.run(move |watch| -> Result<_, Refusal> {
             let renderer = Renderer::of(&compiled)?;
             Ok(watch.run(render.with(&renderer))?)

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::{Refusal, refused};
 use crate::mesh::matrix;
 use crate::model::{PyModel, query_of};
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 /// Rays that one thread follows at once.
 const PACKET: usize = 1024;
@@ -74,7 +74,7 @@ impl PyModel {
             .map(|(o, d)| Ray { origin: [o[0], o[1], o[2]], direction: [d[0], d[1], d[2]], span })
             .collect();
         let compiled = self.compiled(py, None)?;
-        let effort = Effort { py, threads, progress: None };
+        let effort = CallEffort { py, threads, progress: None };
         let (tables, layout) = effort.run(move |watch| -> Result<_, Refusal> {
             let tracer = Tracer::of(&compiled, query_of(true, true))?;
             let packets: Vec<&[Ray]> = rays.chunks(PACKET).collect();

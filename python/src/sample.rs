@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use crate::error::Refusal;
 use crate::mesh::{fineness, region};
 use crate::model::{PyModel, query_of};
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 #[pymethods]
 impl PyModel {
@@ -35,7 +35,7 @@ impl PyModel {
         };
         let query = query_of(gradient, attributes);
         let compiled = self.compiled(py, None)?;
-        let effort = Effort { py, threads, progress };
+        let effort = CallEffort { py, threads, progress };
         let (lattice, planes, layout, origin) = effort.run(move |watch| -> Result<_, Refusal> {
             let lattice = settings.lattice(compiled.tree())?;
             let sampler = Sampler::of(&compiled, query)?;

@@ -11,7 +11,7 @@ use crate::error::{Refusal, refused};
 use crate::evaluator::PyEvaluator;
 use crate::mesh::{fineness, region};
 use crate::model::PyModel;
-use crate::work::Effort;
+use crate::work::CallEffort;
 
 /// The smallest and the largest corner of a box, in the world.
 type WorldCorners = ([f64; 3], [f64; 3]);
@@ -29,7 +29,7 @@ impl PyModel {
         let compiled = self.compiled(py, None)?;
         let origin = compiled.origin();
         let local = region(bounds)?.map(|bounds| bounds.map(|corner| origin.rounded(corner)));
-        let found = Effort::quiet(py).run(move |_| -> Result<_, Refusal> {
+        let found = CallEffort::quiet(py).run(move |_| -> Result<_, Refusal> {
             Ok(Solid::of(&compiled)?.tight_bounds(local, tolerance)?)
         })?;
         let world = |corner: [f32; 3]| origin.world(corner.map(f64::from));
@@ -51,7 +51,7 @@ impl PyModel {
         let origin = compiled.origin();
         let local = region(bounds)?.map(|bounds| bounds.map(|corner| origin.rounded(corner)));
         let settings = Measure { region: local, fineness: fineness(resolution, cell)? };
-        let effort = Effort { py, threads, progress };
+        let effort = CallEffort { py, threads, progress };
         let made = effort.run(move |watch| -> Result<_, Refusal> {
             let solid = Solid::of(&compiled)?;
             Ok(watch.run(solid.measure(&settings))?)
@@ -66,7 +66,7 @@ impl PyModel {
         Ok(dict)
     }
 
-    /// Who decides at points: arrays of nodes (-1 for nobody) and shares, and the paths and lines of the nodes.
+    /// Who decides at points: arrays of nodes (-1 for nobody) and shares, and paths and lines of the nodes.
     fn owner<'py>(
         &self,
         py: Python<'py>,
@@ -80,7 +80,7 @@ impl PyModel {
         let points: Vec<[f64; 3]> = view.outer_iter().map(|row| [row[0], row[1], row[2]]).collect();
         let tree = self.checked(py)?;
         let source = tree.diagnostics(Vec::new()).source_text().cloned();
-        let effort = Effort { py, threads, progress: None };
+        let effort = CallEffort { py, threads, progress: None };
         let found = effort.run(move |watch| -> Result<_, Refusal> {
             let each = |point: &[f64; 3]| {
                 let found = (!watch.is_stopped()).then(|| jbt_model::owner::owner(&tree, *point)).flatten();
@@ -109,7 +109,7 @@ impl PyModel {
     /// What answers the field in the numbers that decide sides: as [`compile`](Self::compile) of the field.
     fn sides(&self, py: Python<'_>) -> PyResult<PyEvaluator> {
         let compiled = self.compiled(py, None)?;
-        let made = Effort::quiet(py).run(move |_| compiled.evaluator(Query::FIELD))?;
+        let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(Query::FIELD))?;
         Ok(PyEvaluator::new(made, self.checked(py)?))
     }
 }

@@ -137,14 +137,14 @@ impl<T> Arrival<T> {
 }
 
 /// Where and how long work is done.
-pub(crate) struct Effort<'py> {
+pub(crate) struct CallEffort<'py> {
     pub(crate) py: Python<'py>,
     pub(crate) threads: Option<usize>,
     /// A callable that is told how far the work is, from 0 to 1.
     pub(crate) progress: Option<Bound<'py, PyAny>>,
 }
 
-impl<'py> Effort<'py> {
+impl<'py> CallEffort<'py> {
     /// All threads, and nobody watches.
     pub(crate) fn quiet(py: Python<'py>) -> Self {
         Self { py, threads: None, progress: None }
