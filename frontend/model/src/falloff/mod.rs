@@ -93,7 +93,7 @@ macro_rules! falloffs {
                 match self { $( Self::$name => $name::ALIASES, )+ $( Self::$rich(_) => $rich::ALIASES, )+ }
             }
 
-            /// Its name in Rust: that of the constructor in [`builder`](crate::builder), if it has parameters.
+            /// The name of its constructor, which stands in [`builder`](crate::builder) if it has parameters.
             #[must_use]
             pub const fn constructor(self) -> &'static str {
                 match self { $( Self::$name => stringify!($module), )+ $( Self::$rich(_) => stringify!($rich_module), )+ }
