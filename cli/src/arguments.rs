@@ -14,7 +14,7 @@ pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
-pub use scene::SceneArguments;
+pub use scene::{SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
     CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
@@ -33,7 +33,7 @@ use words::{queries, words};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
-#[command(name = "jbt", version, max_term_width = 100, after_help = EXIT_CODES)]
+#[command(name = "jbt", version, max_term_width = 100, after_help = after_help())]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -48,9 +48,15 @@ pub struct Arguments {
     pub trace: Option<PathBuf>,
 }
 
+fn after_help() -> String {
+    format!(
+        "A SCENE is {}; `-` reads it from the standard input, where its content tells which. {EXIT_CODES}",
+        jbt::SceneFormat::list()
+    )
+}
+
 const EXIT_CODES: &str = "\
-A SCENE is a .jbt text, a ParsIP scene (.blob, .scene) or a program of instructions (.vm); `-` reads it from the standard
-input, where its first line tells which. Without -o a result is called like the scene, in the current folder.
+Without -o a result is called like the scene, in the current folder.
 
 Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written,
 130 and 143 stopped by SIGINT or SIGTERM.

@@ -24,7 +24,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     }
     let mut told = Findings::default();
     for path in &arguments.scenes {
-        let scene = SceneArguments { path: path.clone(), definitions: arguments.definitions.clone() };
+        let scene = SceneArguments { path: path.clone(), options: arguments.options.clone() };
         let checked = check(&scene, quiet || arguments.json);
         if arguments.json {
             told.add(path, &checked);

@@ -3,7 +3,6 @@
 use std::io;
 
 use jbt::diagnostic::{Severity, Source, SourceText};
-use jbt::text::Options;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query};
 
 use crate::arguments::SceneArguments;
@@ -27,7 +26,7 @@ impl LoadedScene {
     /// Reads and parses a scene.
     pub fn load(arguments: &SceneArguments) -> Result<Self, Failure> {
         let path = &arguments.path;
-        let options = Options { parameters: arguments.definitions.clone() };
+        let options = arguments.options.to_library();
         let loaded = if is_standard(path) {
             jbt::Scene::from_reader("<stdin>", io::stdin().lock(), &options)
         } else {

@@ -98,15 +98,26 @@ impl PyModel {
 impl PyModel {
     /// A file, with values of parameters.
     #[staticmethod]
-    fn load(py: Python<'_>, path: std::path::PathBuf, parameters: Vec<(String, f64)>) -> PyResult<Self> {
-        let options = Options { parameters };
+    fn load(
+        py: Python<'_>,
+        path: std::path::PathBuf,
+        object: Option<String>,
+        parameters: Vec<(String, f64)>,
+    ) -> PyResult<Self> {
+        let options = Options { parameters, object };
         Ok(Self::read(CallEffort::quiet(py).run(move |_| Scene::load_with(path, &options))?))
     }
 
     /// A text, as if it were a file of this name.
     #[staticmethod]
-    fn loads(py: Python<'_>, name: String, text: Vec<u8>, parameters: Vec<(String, f64)>) -> PyResult<Self> {
-        let options = Options { parameters };
+    fn loads(
+        py: Python<'_>,
+        name: String,
+        text: Vec<u8>,
+        object: Option<String>,
+        parameters: Vec<(String, f64)>,
+    ) -> PyResult<Self> {
+        let options = Options { parameters, object };
         let read = move |_: &_| Scene::from_reader(&name, text.as_slice(), &options);
         Ok(Self::read(CallEffort::quiet(py).run(read)?))
     }

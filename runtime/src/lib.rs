@@ -185,6 +185,7 @@ pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
 pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
+pub use jbt_text::import::SceneFormat;
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
 pub use live::{LiveContour, LiveMesh};
@@ -194,7 +195,7 @@ pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygo
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use render::{Render, Renderer};
-pub use scene::{Scene, SceneFormat};
+pub use scene::Scene;
 pub use solid::{Membership, Solid};
 pub use trace::{Ray, Tracer};
 pub use tree::{Node, NodeKind};

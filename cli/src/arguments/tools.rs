@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::Shell;
-use jbt::Query;
+use jbt::{Query, SceneFormat};
 
-use super::scene::definition;
 use super::words::queries;
-use super::{LatticeArguments, LevelName, SceneArguments};
+use super::{LatticeArguments, LevelName, SceneArguments, SceneOptions};
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
@@ -133,12 +132,14 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = CHECK_HELP)]
 pub struct CheckArguments {
-    /// The scenes: .jbt texts, ParsIP .blob or .scene, .vm programs; `-` is the standard input
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(
+        value_name = "SCENE",
+        required = true,
+        help = format!("The scenes, each {}; `-` is the standard input", SceneFormat::list())
+    )]
     pub scenes: Vec<PathBuf>,
-    /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    pub definitions: Vec<(String, f64)>,
+    #[command(flatten)]
+    pub options: SceneOptions,
     /// Print one JSON object instead of messages and summaries
     #[arg(long)]
     pub json: bool,

@@ -23,6 +23,8 @@ use jbt_model::tree::Tree;
 pub struct Options {
     /// Values of parameters, by name; the last one of a name counts.
     pub parameters: Vec<(String, f64)>,
+    /// The object to read, of a file that holds several; those that nothing refers to without it.
+    pub object: Option<String>,
 }
 
 /// The state of reading one text.

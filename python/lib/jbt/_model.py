@@ -671,32 +671,36 @@ def _rays(
 
 def _from_text(text: str) -> Model:
     """A model from what a pickle has of it."""
-    return Model(_jbt.Model.loads("<text>", text.encode(), []))
+    return Model(_jbt.Model.loads("<text>", text.encode(), None, []))
 
 
-def load(path: Path, /, **parameters: float) -> Model:
+def load(path: Path, object: str | None = None, /, **parameters: float) -> Model:
     """Reads a file: .jbt, or one of another system, by its ending (`jbt.SCENE_FORMATS`).
 
     Args:
         path: the file.
+        object: the object to read, of a file that holds several; those that nothing refers to without it.
         parameters: values of the scene's parameters, instead of their defaults.
 
     Raises:
         SceneError: everything that is wrong with its text, with line, column and a caret.
         OSError: the file cannot be read.
     """
-    return _read(_jbt.Model.load(fspath(path), _settings(parameters)))
+    return _read(_jbt.Model.load(fspath(path), object, _settings(parameters)))
 
 
-def loads(text: str | bytes, name: str = "<text>", /, **parameters: float) -> Model:
-    """Reads a text. The ending of the name says what it is, as of a file; without one the text does.
+def loads(
+    text: str | bytes, name: str = "<text>", object: str | None = None, /, **parameters: float
+) -> Model:
+    """Reads a text. The ending of the name says what it is, as of a file; without one the text does. The object
+    is as that of `load`.
 
     >>> import jbt
     >>> jbt.loads("jbt 1 param size = 1 point { radius size }", size=2).parameters
     {'size': 2.0}
     """
     data = text.encode() if isinstance(text, str) else bytes(text)
-    return _read(_jbt.Model.loads(name, data, _settings(parameters)))
+    return _read(_jbt.Model.loads(name, data, object, _settings(parameters)))
 
 
 def _settings(parameters: dict[str, float]) -> list[tuple[str, float]]:

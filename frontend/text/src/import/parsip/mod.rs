@@ -36,6 +36,7 @@ use self::node::Reading;
 use self::scan::{Key, Section};
 use self::state::{Importer, Meaning, NodeState};
 use super::Imported;
+use super::format::{SceneFormatRow, first_line};
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::kind::NodeKind;
@@ -43,6 +44,12 @@ use jbt_model::model::Model;
 use jbt_model::report::Report;
 use jbt_model::tree::Tree;
 use jbt_model::warp::Warp;
+
+/// ParsIP scenes are sections, the first of which begins with a bracket.
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
+    recognizes: |bytes| first_line(bytes).starts_with(b"["),
+    ..SceneFormatRow::new(&["blob", "scene"], "a ParsIP scene", |bytes, _| parsip(bytes))
+};
 
 /// The model of a ParsIP scene (`.blob`, `.scene`).
 ///
