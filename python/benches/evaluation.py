@@ -2,13 +2,12 @@
 
     python benches/evaluation.py [PROGRAM]
 
-PROGRAM is the binary `limit-of-python` of jbt-benches, if times of Rust are wanted for comparison: without it
-they are left out. Runs take turns, and medians count.
+PROGRAM is the binary `python_peer` of jbt-benches, if the times of Rust are wanted. Runs take turns,
+and medians count.
 """
 
 from __future__ import annotations
 
-import resource
 import statistics
 import subprocess
 import sys
@@ -40,21 +39,29 @@ def planes(count: int) -> NDArray[np.float32]:
     return (np.stack(fractions) * 3 - 1.5).astype(np.float32)
 
 
+def process() -> tuple[int, int]:
+    """Bytes of memory of this process: now, and at most since the last question. Linux tells it."""
+    status = Path("/proc/self/status").read_text()
+    now, most = (int(status.split(word)[1].split()[0]) * 1024 for word in ("VmRSS:", "VmHWM:"))
+    Path("/proc/self/clear_refs").write_text("5")
+    return now, most
+
+
 def memory(ev: jbt.Evaluator) -> None:
     """What a call allocates beside its answers."""
     points = planes(POINTS)
     ev(points[:, :100].copy())
+    resident, _ = process()
     tracemalloc.start()
-    peak_before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     before, _ = tracemalloc.get_traced_memory()
     answers = ev(points)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - peak_before) * 1024
+    grown = process()[1] - resident
     output = answers.planes.nbytes
     print(f"{POINTS:,} points: answers of {output / 2**20:.1f} MiB")
     print(f"  NumPy allocated {(peak - before - output) / 2**10:+.1f} KiB beside them")
-    print(f"  the process grew by {(grown - output) / 2**20:+.1f} MiB beside them")
+    print(f"  the process grew by {(grown - output) / 2**20:+.1f} MiB beside them, at most")
 
 
 def calls(ev: jbt.Evaluator, rounds: int = 9) -> None:
@@ -105,7 +112,9 @@ def against_rust(ev: jbt.Evaluator, program: str, rounds: int = 5) -> None:
     ratios, mine = [], []
     for _ in range(rounds):
         theirs = float(
-            subprocess.run([program, str(SCENE), str(POINTS)], capture_output=True, check=True).stdout
+            subprocess.run(
+                [program, "points", str(SCENE), str(POINTS)], capture_output=True, check=True
+            ).stdout
         )
         mine.append(seconds(lambda: ev(points, out=out)))
         ratios.append(mine[-1] / theirs)

@@ -692,8 +692,8 @@ def load(path: Path, object: str | None = None, /, **parameters: float) -> Model
 def loads(
     text: str | bytes, name: str = "<text>", object: str | None = None, /, **parameters: float
 ) -> Model:
-    """Reads a text. The ending of the name says what it is, as of a file; without one the text does. The object
-    is as that of `load`.
+    """Reads a text. The ending of the name says what it is, as of a file; without one the text does. An
+    object is chosen as by `load`.
 
     >>> import jbt
     >>> jbt.loads("jbt 1 param size = 1 point { radius size }", size=2).parameters
