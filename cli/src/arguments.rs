@@ -17,7 +17,8 @@ pub use render::{GroundName, RenderArguments};
 pub use scene::{SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
-    CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
+    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
+    StatsArguments,
 };
 pub use work::WorkArguments;
 
@@ -68,6 +69,7 @@ Examples:
   jbt contour circles.jbt --quadtree -o circles.svg
   jbt sample hero.jbt --resolution 64 -o field.npy
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt convert drop.pov -o drop.jbt
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
   jbt stats hero.jbt
@@ -86,6 +88,8 @@ pub enum Command {
     Sample(SampleArguments),
     /// Evaluate a scene at the points of a CSV file
     Eval(EvalArguments),
+    /// Write a scene of any format as a .jbt text
+    Convert(ConvertArguments),
     /// Print a scene as one of the stages that it goes through on its way to machine code
     Show(ShowArguments),
     /// Count the evaluations of primitives that a point and a lattice take, and how many matter

@@ -7,6 +7,7 @@
 //! contour   .svg .png
 //! sample    .npy
 //! eval      .csv
+//! convert   .jbt
 //! ```
 
 use std::fmt::Debug;
@@ -100,6 +101,18 @@ pub enum TableKind {
 impl FileKind for TableKind {
     const RESULT: &'static str = "a table";
     const ROWS: &'static [FormatRow<Self>] = &[row(Self::Csv, "csv", "A table with a header")];
+}
+
+/// What `jbt convert` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TextKind {
+    /// The text format of this project.
+    Jbt,
+}
+
+impl FileKind for TextKind {
+    const RESULT: &'static str = "a text";
+    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Jbt, "jbt", "A model as text")];
 }
 
 /// The row that counts where nothing says which.

@@ -32,8 +32,11 @@ impl LoadedScene {
         } else {
             jbt::Scene::load_with(path, &options)
         };
-        let jbt::Scene { model, warnings, text, .. } =
+        let jbt::Scene { mut model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
+        if arguments.options.mirror {
+            model.orientation.handed = model.orientation.handed.other();
+        }
         let notices: Vec<_> = warnings.iter().map(|one| Message::new(&text.source(), one)).collect();
         let warnings = notices.iter().map(|notice| notice.rendered.clone()).collect();
         Ok(Self { text, model, warnings, notices })

@@ -6,6 +6,13 @@
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
+/// Numbers and strings of one request of a RIB file: 8 bytes each, kept until the request has been read.
+pub const MAX_LIST_NUMBERS: usize = 1 << 22;
+/// Steps of a scene that is a program, as those of POV-Ray are: directives that run, components, calls of
+/// functions. A step takes some tenths of a microsecond.
+pub const MAX_SCRIPT_STEPS: usize = 1 << 20;
+/// Blocks within each other in a file that has them, each of which keeps a state of some hundred bytes.
+pub const MAX_BLOCK_DEPTH: usize = 1 << 16;
 /// Errors that are kept for one file; the rest are counted.
 pub const MAX_ERRORS: usize = 50;
 /// Operators and parentheses of one number expression that wait for their operands.

@@ -170,6 +170,7 @@ pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_model::falloff::Falloff;
 pub use jbt_model::model::Model;
 pub use jbt_model::number::Number;
+pub use jbt_model::orientation::{Handed, ModelUp, Orientation};
 pub use jbt_model::origin::ModelOrigin;
 pub use jbt_model::parameter::Parameter;
 pub use jbt_model::query::{AnswerKind, Planes, Query};

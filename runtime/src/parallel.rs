@@ -13,7 +13,7 @@ pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, j
 mod serial {
     //! What this crate uses of rayon's interface, on iterators of the standard library.
 
-    use std::slice::{Chunks, Iter};
+    use std::slice::{Chunks, ChunksMut, Iter};
 
     /// One: the caller.
     pub(crate) fn thread_count() -> usize {
@@ -36,6 +36,7 @@ mod serial {
     pub(crate) trait ParallelSlice<T> {
         fn par_iter(&self) -> Iter<'_, T>;
         fn par_chunks(&self, size: usize) -> Chunks<'_, T>;
+        fn par_chunks_mut(&mut self, size: usize) -> ChunksMut<'_, T>;
         fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K);
     }
 
@@ -46,6 +47,10 @@ mod serial {
 
         fn par_chunks(&self, size: usize) -> Chunks<'_, T> {
             self.chunks(size)
+        }
+
+        fn par_chunks_mut(&mut self, size: usize) -> ChunksMut<'_, T> {
+            self.chunks_mut(size)
         }
 
         fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K) {

@@ -23,6 +23,9 @@ pub struct SceneOptions {
     /// Read this object of a file that holds several, instead of those that no other object refers to
     #[arg(long, value_name = "NAME")]
     pub object: Option<String>,
+    /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored, coordinates stay
+    #[arg(long)]
+    pub mirror: bool,
 }
 
 impl SceneOptions {
@@ -32,7 +35,7 @@ impl SceneOptions {
     }
 }
 
-fn definition(text: &str) -> Result<(String, f64), String> {
+pub(super) fn definition(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     let name = name.trim();
     if name.is_empty() {

@@ -7,7 +7,8 @@ use clap_complete::Shell;
 use jbt::{Query, SceneFormat};
 
 use super::words::queries;
-use super::{LatticeArguments, LevelName, SceneArguments, SceneOptions};
+use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
+use crate::formats::TextKind;
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
@@ -37,6 +38,25 @@ pub struct ShowArguments {
     /// JBT_LEVEL]
     #[arg(long, value_enum)]
     pub level: Option<LevelName>,
+}
+
+/// What `jbt convert` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The text is the same model: it has the same field and attributes to the last bit, and stands the same way up. Names, comments
+and loops of the scene are not kept. docs/readers.md says what is read of each format, and what is left out.
+
+Examples:
+  jbt convert drop.pov -o drop.jbt
+  jbt convert scene.pov --object Flower -o flower.jbt
+  jbt convert tree.json -o - | less")]
+pub struct ConvertArguments {
+    /// What to write.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Where the text goes.
+    #[command(flatten)]
+    pub output: OutputArguments<TextKind>,
 }
 
 /// What `jbt count` takes.

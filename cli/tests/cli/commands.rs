@@ -514,12 +514,14 @@ fn help_and_version() {
     assert_eq!(folder.jbt(&["--version"]).code(0).stdout(), concat!("jbt ", env!("CARGO_PKG_VERSION"), "\n"));
     let all = folder.jbt(&["--help"]).code(0).stdout();
     assert!(all.contains("(.vm)"), "{all}");
-    for command in ["mesh", "render", "contour", "sample", "eval", "show", "count", "stats", "check"] {
+    for command in
+        ["mesh", "render", "contour", "sample", "eval", "convert", "show", "count", "stats", "check"]
+    {
         assert!(all.contains(command));
         let help = folder.jbt(&[command, "--help"]).code(0).stdout();
         assert!(help.contains("SCENE"));
         let flat = help.split_whitespace().collect::<Vec<_>>().join(" ");
-        for ending in [".jbt", ".blob", ".scene", ".vm"] {
+        for ending in [".jbt", ".blob", ".scene", ".vm", ".pov", ".rib", ".json"] {
             assert!(flat.contains(ending), "{command}: {ending}: {help}");
         }
     }

@@ -8,6 +8,7 @@ mod folder;
 mod hostile;
 mod manual;
 mod outputs;
+mod readers;
 mod render;
 mod signals;
 mod timeline;

@@ -109,6 +109,7 @@ impl Model {
             parameters,
             dependence,
             origin,
+            orientation: self.orientation,
             source,
             lineage: None,
         };

@@ -29,6 +29,7 @@ pub mod map;
 pub mod member;
 pub mod model;
 pub mod number;
+pub mod orientation;
 pub mod origin;
 pub mod owner;
 pub mod parameter;

@@ -3,6 +3,7 @@
 use crate::attribute::AttributeGroup;
 use crate::diagnostic::SourceText;
 use crate::number::Number;
+use crate::orientation::Orientation;
 use crate::parameter::{Parameter, collect};
 use crate::tree::{DEFAULT_ISO, Tree};
 
@@ -23,6 +24,8 @@ pub struct Model {
     /// Where its local coordinates begin, as the statement `origin` sets it; `None` leaves it to the
     /// [check](crate::check), which finds one for a model that is far away. See [`origin`](crate::origin).
     pub origin: Option<[f64; 3]>,
+    /// How it stands: which axis points up, and the hand of its axes. Pictures and files ask for it.
+    pub orientation: Orientation,
 }
 
 impl Model {
@@ -35,7 +38,8 @@ impl Model {
         let iso = Number::from(Self::DEFAULT_ISO);
         let (parameters, _) = collect(&[], &iso, &root);
         let attributes = vec![AttributeGroup::color()];
-        Self { iso, attributes, root, parameters, origin: None, source: None }
+        let orientation = Orientation::default();
+        Self { iso, attributes, root, parameters, origin: None, orientation, source: None }
     }
 
     /// The same with its local coordinates beginning at a point of the world: see [`origin`](crate::origin).
@@ -54,11 +58,12 @@ impl Model {
 impl PartialEq for Model {
     /// The same field, attributes and parameters; where they were written does not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, root, parameters, origin, source: _ } = self;
+        let Self { iso, attributes, root, parameters, origin, orientation, source: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *root == other.root
             && *parameters == other.parameters
             && *origin == other.origin
+            && *orientation == other.orientation
     }
 }

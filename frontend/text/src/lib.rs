@@ -19,6 +19,7 @@
 //! file       = "jbt" "1" { statement } ;                     exactly one statement is a node: the root
 //! statement  = "iso" expression                              before all nodes; 0.5 if not written
 //!            | "origin" vector                               where local coordinates begin; found by the check if not written
+//!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" node

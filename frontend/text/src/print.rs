@@ -15,6 +15,7 @@ use jbt_model::falloff::FalloffKind;
 use jbt_model::field::{FieldKind, NumberText as _};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
+use jbt_model::orientation::Orientation;
 use jbt_model::tree::Tree;
 use jbt_model::written::{
     FieldNumber, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenTextured, WrittenUv,
@@ -33,6 +34,10 @@ pub fn print(model: &Model) -> String {
     let _ = writeln!(out, "iso {}", model.iso);
     if let Some(point) = model.origin {
         let _ = writeln!(out, "origin {}", vector(point));
+    }
+    if model.orientation != Orientation::default() {
+        let Orientation { up, handed } = model.orientation;
+        let _ = writeln!(out, "orientation up {} handed {}", up.name(), handed.name());
     }
     for group in &model.attributes {
         if *group != AttributeGroup::color() {

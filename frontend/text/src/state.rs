@@ -14,6 +14,7 @@ use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
+use jbt_model::orientation::Orientation;
 use jbt_model::parameter::Parameter;
 use jbt_model::report::{Report, clip};
 use jbt_model::tree::Tree;
@@ -47,6 +48,7 @@ pub(super) struct Parser<'a> {
     pub(super) iso: Number,
     pub(super) iso_at: Option<Span>,
     pub(super) origin: Option<[f64; 3]>,
+    pub(super) orientation: Option<Orientation>,
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
     pub(super) root: Option<Tree>,
@@ -73,6 +75,7 @@ impl<'a> Parser<'a> {
             iso: Model::DEFAULT_ISO.into(),
             iso_at: None,
             origin: None,
+            orientation: None,
             nodes: 0,
             root: None,
             ended: false,

@@ -5,6 +5,8 @@ use std::fmt;
 use std::ops::Sub;
 use std::str::FromStr;
 
+use jbt_model::orientation::ModelUp;
+
 use crate::srgb;
 use crate::word::{UnknownWord, find};
 
@@ -63,14 +65,14 @@ pub struct Colors {
     pub encoding: ColorEncoding,
 }
 
-/// Which axis of a file points up. Models are z-up.
+/// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Up {
-    /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is
-    /// the file's +z.
+    /// A model with z up is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The
+    /// model's -y is the file's +z.
     Y,
-    /// As in the model.
+    /// As in a model with z up.
     Z,
 }
 
@@ -87,7 +89,7 @@ impl Up {
         }
     }
 
-    /// Where a point of the model, or a direction, is in a file.
+    /// Where a point of a model with z up, or a direction, is in a file.
     #[must_use]
     pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
@@ -137,8 +139,21 @@ impl ColorEncoding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileChoices {
     pub up: Up,
+    /// The axis of the model that points up.
+    pub model: ModelUp,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,
+}
+
+impl FileChoices {
+    /// Where a point of the model, or a direction, is in the file.
+    pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        match (self.model, self.up) {
+            (ModelUp::Z, up) => up.place([x, y, z]),
+            (ModelUp::Y, Up::Y) => [x, y, z],
+            (ModelUp::Y, Up::Z) => [x, T::default() - z, y],
+        }
+    }
 }
 
 impl fmt::Display for Up {

@@ -101,8 +101,9 @@ impl ExportOptions {
 }
 
 impl FileChoices {
-    pub(super) fn new(format: Format, options: &ExportOptions) -> Self {
-        Self { up: options.up_in(format), colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear) }
+    pub(super) fn new(mesh: &Mesh, format: Format, options: &ExportOptions) -> Self {
+        let colors = options.colors_in(format).unwrap_or(ColorEncoding::Linear);
+        Self { up: options.up_in(format), model: mesh.orientation.up, colors }
     }
 }
 

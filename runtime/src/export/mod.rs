@@ -116,7 +116,8 @@ pub fn write_with(
     out: &mut impl Write,
 ) -> Result<(), ExportError> {
     check(mesh)?;
-    let choices = FileChoices::new(format, options);
+    let mesh = &*mesh.right_handed();
+    let choices = FileChoices::new(mesh, format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     format.write(mesh, choices, &mut out).map_err(|error| match error {
         WriteError::Write(error) => ExportError::Write(error),

@@ -23,7 +23,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+    let FileChoices { up, colors: encoding, .. } = choices;
     writeln!(out, "# jbt, {up} up")?;
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
@@ -34,7 +34,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         write_vertices(mesh, choices, |vertex| mesh.world(vertex), out)?;
     }
     write_items(out, mesh.normals.len(), |vertex, bytes| {
-        let [x, y, z] = up.place(mesh.normals[vertex]);
+        let [x, y, z] = choices.place(mesh.normals[vertex]);
         writeln!(bytes, "vn {x} {y} {z}")
     })?;
     let uvs = uvs(mesh);
@@ -57,13 +57,13 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    FileChoices { up, colors: encoding }: FileChoices,
+    choices: FileChoices,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
-    let colors = colors(mesh);
+    let (colors, encoding) = (colors(mesh), choices.colors);
     write_items(out, mesh.positions.len(), |vertex, bytes| {
-        let [x, y, z] = up.place(position(vertex));
+        let [x, y, z] = choices.place(position(vertex));
         write!(bytes, "v {x} {y} {z}")?;
         if let Some(colors) = colors {
             let [r, g, b] = colors[vertex].map(|channel| encoding.encode(channel));

@@ -27,7 +27,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+    let FileChoices { up, colors: encoding, .. } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;
@@ -56,12 +56,12 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
 
     write_items(out, mesh.positions.len(), |vertex, bytes| {
         if is_far {
-            let place = up.place(mesh.world(vertex));
+            let place = choices.place(mesh.world(vertex));
             place.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
         } else {
-            push_reals(bytes, up.place(mesh.positions[vertex]));
+            push_reals(bytes, choices.place(mesh.positions[vertex]));
         }
-        push_reals(bytes, up.place(mesh.normals[vertex]));
+        push_reals(bytes, choices.place(mesh.normals[vertex]));
         if let Some(colors) = colors {
             bytes.extend_from_slice(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))));
         }

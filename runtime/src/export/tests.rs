@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use jbt_model::orientation::{Handed, ModelUp, Orientation};
+
 use super::*;
 
 /// A tetrahedron with awkward colours and attributes.
@@ -14,6 +16,7 @@ fn tetrahedron() -> Mesh {
     let third = 1.0_f32 / 3.0;
     Mesh {
         origin: [0.0; 3],
+        orientation: Orientation::default(),
         positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]],
         normals: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         attributes: vec![
@@ -309,6 +312,46 @@ fn files_are_the_right_way_up() {
     write_with(&tetrahedron(), Format::Stl, &options, &mut turned).unwrap();
     let ([x, y, z], turned) = (reals(&plain[84..96]).try_into().unwrap(), reals(&turned[84..96]));
     assert_eq!(turned, Up::Y.place([x, y, z]));
+}
+
+#[test]
+fn models_that_stand_otherwise_are_the_right_way_up_too() {
+    let y_right = Orientation { up: ModelUp::Y, handed: Handed::Right };
+    let mut mesh = Mesh { orientation: y_right, ..tetrahedron() };
+    let obj = |mesh: &Mesh, up: Up| {
+        let options = ExportOptions { up: Some(up), ..ExportOptions::default() };
+        let mut file = Vec::new();
+        write_with(mesh, Format::Obj, &options, &mut file).unwrap();
+        String::from_utf8(file).unwrap()
+    };
+    let lines = |text: &str, begin: &str| -> Vec<String> {
+        text.lines().filter_map(|line| line.strip_prefix(begin)).map(str::to_owned).collect()
+    };
+    let places = |text: &str| -> Vec<[f32; 3]> {
+        let numbers = |line: &String| {
+            let numbers: Vec<f32> = line.split(' ').take(3).map(|word| word.parse().unwrap()).collect();
+            [numbers[0], numbers[1], numbers[2]]
+        };
+        lines(text, "v ").iter().map(numbers).collect()
+    };
+    // As it is, where the file has y up as well; turned about x, where it has z up.
+    assert_eq!(places(&obj(&mesh, Up::Y)), mesh.positions);
+    let turned: Vec<[f32; 3]> = mesh.positions.iter().map(|[x, y, z]| [*x, 0.0 - z, *y]).collect();
+    assert_eq!(places(&obj(&mesh, Up::Z)), turned);
+    let (json, _) = parse_glb(&bytes(&mesh, Format::Glb));
+    assert!(json["nodes"][0]["rotation"].is_null());
+
+    // Left-handed axes are mirrored, and triangles turned around: a closed mesh has the same volume again.
+    mesh.orientation.handed = Handed::Left;
+    let file = obj(&mesh, Up::Y);
+    let mirrored: Vec<[f32; 3]> = mesh.positions.iter().map(|[x, y, z]| [*x, *y, 0.0 - z]).collect();
+    assert_eq!(places(&file), mirrored);
+    assert_eq!(lines(&file, "vn ")[3], "0 0 -1");
+    assert_eq!(lines(&file, "f ")[0], "1//1 2//2 3//3");
+    assert_eq!(lines(&obj(&tetrahedron(), Up::Y), "f ")[0], "1//1 3//3 2//2");
+    let right = mesh.right_handed();
+    assert_eq!((right.orientation, &right.attributes.len()), (y_right, &mesh.attributes.len()));
+    assert_eq!(right.right_handed().positions, right.positions);
 }
 
 #[test]

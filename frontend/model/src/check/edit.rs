@@ -116,7 +116,10 @@ impl CheckedModel {
                 .iter()
                 .zip(&edited.attributes)
                 .all(|(a, b)| bits(&a.default) == bits(&b.default));
-        let same = same_groups && before.iso == edited.iso && origin(before) == origin(edited);
+        let same = same_groups
+            && before.iso == edited.iso
+            && origin(before) == origin(edited)
+            && before.orientation == edited.orientation;
         if !same || before.parameters != edited.parameters {
             return None;
         }

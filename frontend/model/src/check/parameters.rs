@@ -178,10 +178,21 @@ impl CheckedTree {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
-        let (origin, source) = (self.origin, self.source.clone());
+        let (origin, orientation, source) = (self.origin, self.orientation, self.source.clone());
         let lineage = Some(Lineage { from: Arc::clone(&self.nodes), changed: changed.into() });
         let paths = Paths::new(&nodes);
-        Ok(Self { iso, attributes, paths, nodes, parameters, dependence, origin, source, lineage })
+        Ok(Self {
+            iso,
+            attributes,
+            paths,
+            nodes,
+            parameters,
+            dependence,
+            origin,
+            orientation,
+            source,
+            lineage,
+        })
     }
 
     /// The nodes, with those that depend on moved parameters evaluated and checked again; and which they

@@ -67,6 +67,12 @@ macro_rules! formats {
 }
 
 formats! {
+    /// A tree of three-js-blobtree: see [`threejs`](fn@super::threejs).
+    ThreeJs = threejs,
+    /// A POV-Ray scene: see [`pov`](fn@super::pov).
+    Pov = pov,
+    /// A RenderMan scene: see [`rib`](fn@super::rib).
+    Rib = rib,
     /// A ParsIP scene: see [`parsip`](fn@super::parsip).
     Parsip = parsip,
     /// A program of instructions: see [`vm`](fn@super::vm).

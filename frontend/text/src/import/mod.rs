@@ -7,9 +7,17 @@ mod format;
 mod imported;
 mod jbt;
 mod parsip;
+mod pov;
+mod rib;
+mod srgb;
+mod tally;
+mod threejs;
 mod vm;
 
 pub use format::SceneFormat;
 pub use imported::Imported;
 pub use parsip::parsip;
+pub use pov::pov;
+pub use rib::rib;
+pub use threejs::threejs;
 pub use vm::vm;
