@@ -19,6 +19,11 @@ pub(crate) fn merged<'a>(mut all: impl Iterator<Item = &'a Model>) -> PyResult<M
                 "models with the iso-values {a} and {b} cannot be combined: give both one by .with_iso(..)"
             )));
         }
+        if merged.orientation != model.orientation {
+            return Err(refused(
+                "models that stand in different ways cannot be combined: give both one by .with_orientation(..)",
+            ));
+        }
         merge_groups(&mut merged.attributes, &model.attributes)?;
         for parameter in &model.parameters {
             match merged.parameters.iter().find(|known| known.name() == parameter.name()) {

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::refused;
-use crate::model::{PyModel, engine_of};
+use crate::model::{PyModel, engine_of, orientation_of};
 use crate::work::CallEffort;
 
 /// How fine a lattice is: by its cell, or by cells along the longest side.
@@ -84,6 +84,8 @@ fn told(py: Python<'_>, made: Polygonized) -> PyResult<Bound<'_, PyDict>> {
     let Polygonized { mesh, report, lattice, engine, primitive_evaluations, compile_time, .. } = made;
     let dict = PyDict::new(py);
     dict.set_item("origin", mesh.origin)?;
+    dict.set_item("up", mesh.orientation.up.name())?;
+    dict.set_item("handed", mesh.orientation.handed.name())?;
     dict.set_item("vertices", matrix(py, 3, mesh.positions.into_flattened())?)?;
     dict.set_item("normals", matrix(py, 3, mesh.normals.into_flattened())?)?;
     dict.set_item("faces", matrix(py, 3, mesh.triangles.into_flattened())?)?;
@@ -128,6 +130,7 @@ pub(crate) fn save_mesh(
     py: Python<'_>,
     path: PathBuf,
     origin: [f64; 3],
+    orientation: (&str, &str),
     vertices: PyReadonlyArray2<'_, f32>,
     normals: PyReadonlyArray2<'_, f32>,
     faces: PyReadonlyArray2<'_, u32>,
@@ -142,6 +145,7 @@ pub(crate) fn save_mesh(
     });
     let mesh = Mesh {
         origin,
+        orientation: orientation_of(orientation.0, orientation.1)?,
         positions: triples("vertices", &vertices)?,
         normals: triples("normals", &normals)?,
         attributes: attributes.collect(),

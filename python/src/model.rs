@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use jbt::{AttributeGroup, CheckedTree, Compiled, Engine, Mixing, Query, Scene, Tree};
 use jbt_model::model::Model;
+use jbt_model::orientation::{Handed, ModelUp, Orientation};
 use jbt_text::Options;
 use pyo3::prelude::*;
 
@@ -68,9 +69,13 @@ impl PyModel {
 
     /// Whether it says more than its tree does.
     pub(crate) fn says_more(&self) -> bool {
-        let Model { iso, attributes, root: _, parameters, source, origin } = &self.0.model;
+        let Model { iso, attributes, root: _, parameters, source, origin, orientation } = &self.0.model;
         let plain = *iso == Model::DEFAULT_ISO.into() && *attributes == [AttributeGroup::color()];
-        !plain || !parameters.is_empty() || source.is_some() || origin.is_some()
+        !plain
+            || !parameters.is_empty()
+            || source.is_some()
+            || origin.is_some()
+            || *orientation != Orientation::default()
     }
 
     /// The checked tree.
@@ -154,6 +159,17 @@ impl PyModel {
     #[pyo3(signature = (origin))]
     fn with_origin(&self, origin: Option<[f64; 3]>) -> Self {
         self.edited(Model { origin, ..self.0.model.clone() })
+    }
+
+    /// The axis that points up, and the hand of the axes.
+    #[getter]
+    fn orientation(&self) -> (&'static str, &'static str) {
+        let Orientation { up, handed } = self.0.model.orientation;
+        (up.name(), handed.name())
+    }
+
+    fn with_orientation(&self, up: &str, handed: &str) -> PyResult<Self> {
+        Ok(self.edited(Model { orientation: orientation_of(up, handed)?, ..self.0.model.clone() }))
     }
 
     /// Attribute groups: name, default, mixing.
@@ -255,6 +271,16 @@ impl PyModel {
         let warnings = scene.warnings.iter().map(|one| one.message.clone()).collect();
         Self::new(scene.model, warnings)
     }
+}
+
+/// The orientation of these words.
+pub(crate) fn orientation_of(up: &str, handed: &str) -> PyResult<Orientation> {
+    let axis = ModelUp::ALL.into_iter().find(|known| known.name() == up);
+    let hand = Handed::ALL.into_iter().find(|known| known.name() == handed);
+    Ok(Orientation {
+        up: axis.ok_or_else(|| refused(format!("up: expected y or z, got {up:?}")))?,
+        handed: hand.ok_or_else(|| refused(format!("handed: expected right or left, got {handed:?}")))?,
+    })
 }
 
 /// The query with the field and what else is wanted.

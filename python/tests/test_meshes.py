@@ -208,3 +208,28 @@ def test_measures() -> None:
     assert np.allclose(ball.bounds, [[4, -1, -1], [6, 1, 1]], atol=0.01)
     assert np.allclose(ball.tight_bounds(1e-5), [[4, -1, -1], [6, 1, 1]], atol=2e-5)
     assert ball.support[1, 0] > 6
+
+
+def test_models_stand_as_they_say(tmp_path: Path) -> None:
+    # POV-Ray's axes: y up, left-handed.
+    pear = jbt.point((0, 0, 0.3), surface_radius=0.5) | jbt.point((0, 1, 0), surface_radius=0.3)
+    assert pear.orientation == ("z", "right")
+    left = pear.with_orientation("y", "left")
+    assert "orientation up y handed left" in str(left)
+    assert pickle.loads(pickle.dumps(left)).orientation == ("y", "left")
+    mesh = left.mesh(resolution=24)
+    assert (mesh.up, mesh.handed) == ("y", "left")
+    assert (mesh.vertices == pear.mesh(resolution=24).vertices).all()
+    right = mesh.right_handed()
+    assert right.volume == pytest.approx(mesh.volume, rel=1e-6)
+    assert np.allclose(right.vertices, mesh.vertices * [1, 1, -1])
+    trimesh = pytest.importorskip("trimesh")
+    made = mesh.to_trimesh()
+    assert made.volume == pytest.approx(mesh.volume, rel=1e-6)
+    mesh.save(tmp_path / "x.glb")
+    read = trimesh.load_mesh(tmp_path / "x.glb")
+    assert np.allclose(read.bounds, made.bounds, atol=1e-6), "glTF has y up"
+    with pytest.raises(ValueError, match="stand in different ways"):
+        pear | left
+    with pytest.raises(ValueError, match="up: expected y or z"):
+        pear.with_orientation("x")  # type: ignore[arg-type]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import fspath
 from typing import Any
 
@@ -19,10 +19,12 @@ class Mesh:
 
     Attributes:
         vertices: float32, (n, 3): positions, counting from `origin`.
-        faces: uint32, (m, 3): three vertices each, counter-clockwise when seen from outside.
+        faces: uint32, (m, 3): three vertices each, counter-clockwise from outside, in right-handed axes.
         normals: float32, (n, 3), of length 1, outwards.
         attributes: float32, (n, width) for each group of the model: `color`, ...
         origin: where positions count from, in the world: 0 unless the model is far away.
+        up: the axis that points up, "z" or "y", as the model has it.
+        handed: the hand of the axes, "right" or "left", as the model has it.
         closed: whether every edge has two triangles.
         cut_sides: the sides of the region that cut the surface: "none", or as "-x +z".
         spacing: the edge of a cell.
@@ -34,6 +36,8 @@ class Mesh:
     normals: Floats
     attributes: dict[str, Floats] = field(default_factory=dict)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    up: str = "z"
+    handed: str = "right"
     closed: bool = True
     cut_sides: str = "none"
     spacing: float = 0.0
@@ -54,6 +58,22 @@ class Mesh:
     def world(self) -> Doubles:
         """Positions in the world, as float64, (n, 3)."""
         return self.vertices.astype(np.float64) + np.asarray(self.origin, np.float64)
+
+    def right_handed(self) -> Mesh:
+        """The mirror image in right-handed axes of a mesh in left-handed ones; else this mesh."""
+        if self.handed == "right":
+            return self
+        turn = np.array([1, 1, -1] if self.up == "y" else [1, -1, 1], np.float32)
+        x, y, z = (float(number) for number in np.asarray(self.origin) * turn)
+        return replace(
+            self,
+            # A sum with 0 makes no zero a negative one; a mirror turns every triangle around.
+            vertices=self.vertices * turn + np.float32(0),
+            normals=self.normals * turn + np.float32(0),
+            faces=np.ascontiguousarray(self.faces[:, [0, 2, 1]]),
+            origin=(x, y, z),
+            handed="right",
+        )
 
     @property
     def bounds(self) -> Doubles:
@@ -85,11 +105,12 @@ class Mesh:
         """As `trimesh.Trimesh`: positions in the world, colours as bytes of sRGB, attributes by name."""
         import trimesh
 
+        mesh = self.right_handed()
         others: Any = {name: values for name, values in self.attributes.items() if name != "color"}
         return trimesh.Trimesh(
-            vertices=self.world,
-            faces=self.faces.astype(np.int64),
-            vertex_normals=self.normals,
+            vertices=mesh.world,
+            faces=mesh.faces.astype(np.int64),
+            vertex_normals=mesh.normals,
             vertex_colors=np.column_stack([self.srgb, np.full(len(self.vertices), 255, np.uint8)]),
             vertex_attributes=others,
             process=False,
@@ -100,9 +121,10 @@ class Mesh:
         attributes are linear."""
         import pyvista
 
-        faces: Any = self.faces.astype(np.int64)
-        made = pyvista.PolyData.from_regular_faces(self.world, faces)
-        made.point_data["Normals"] = self.normals
+        mesh = self.right_handed()
+        faces: Any = mesh.faces.astype(np.int64)
+        made = pyvista.PolyData.from_regular_faces(mesh.world, faces)
+        made.point_data["Normals"] = mesh.normals
         made.point_data["rgb"] = self.srgb
         for name, values in self.attributes.items():
             made.point_data[name] = values[:, 0] if values.shape[1] == 1 else values
@@ -112,9 +134,10 @@ class Mesh:
         """As `meshio.Mesh`: positions in the world, normals and linear attributes as point data."""
         import meshio
 
-        data = {"normals": self.normals, **self.attributes}
+        mesh = self.right_handed()
+        data = {"normals": mesh.normals, **self.attributes}
         flat = {name: values[:, 0] if values.shape[1] == 1 else values for name, values in data.items()}
-        return meshio.Mesh(self.world, [("triangle", self.faces.astype(np.int64))], point_data=flat)
+        return meshio.Mesh(mesh.world, [("triangle", mesh.faces.astype(np.int64))], point_data=flat)
 
     def save(
         self,
@@ -138,7 +161,16 @@ class Mesh:
         vertices, normals = (np.ascontiguousarray(a, np.float32) for a in (self.vertices, self.normals))
         faces = np.ascontiguousarray(self.faces, np.uint32)
         _jbt.save_mesh(
-            fspath(path), list(self.origin), vertices, normals, faces, attributes, format, up, colors
+            fspath(path),
+            list(self.origin),
+            (self.up, self.handed),
+            vertices,
+            normals,
+            faces,
+            attributes,
+            format,
+            up,
+            colors,
         )
 
     def __repr__(self) -> str:
@@ -156,6 +188,6 @@ def srgb(linear: Floats) -> NDArray[np.uint8]:
 def of_native(made: dict[str, Any]) -> Mesh:
     """A mesh from what the native module tells."""
     arrays = {name: made.pop(name) for name in ("vertices", "faces", "normals", "attributes")}
-    facts = {name: made.pop(name) for name in ("closed", "cut_sides", "spacing")}
+    facts = {name: made.pop(name) for name in ("up", "handed", "closed", "cut_sides", "spacing")}
     x, y, z = made.pop("origin")
     return Mesh(**arrays, origin=(x, y, z), **facts, info=made)

@@ -289,6 +289,15 @@ class Model(ModelMembers):
         return Model(self._native.with_origin(None if origin is None else [float(x) for x in origin]))
 
     @property
+    def orientation(self) -> tuple[str, str]:
+        """How it stands: the axis that points up, "z" or "y", and the hand of its axes, "right" or "left"."""
+        return self._native.orientation
+
+    def with_orientation(self, up: Literal["y", "z"], handed: Literal["right", "left"] = "right") -> Model:
+        """The same, standing so. It changes no coordinate: pictures and files show it the right way up."""
+        return Model(self._native.with_orientation(up, handed))
+
+    @property
     def groups(self) -> tuple[Group, ...]:
         """Its groups of attributes, `color` first."""
         return tuple(Group(name, tuple(default), mixing) for name, default, mixing in self._native.groups())
@@ -504,7 +513,8 @@ class Model(ModelMembers):
         Args:
             size: pixels of a row, and rows.
             view: "three-quarter", "iso", "front", "back", "left", "right", "top" or "bottom".
-            direction: where one looks from, as a vector, instead.
+            direction: where one looks from, instead: how far to the front, to the left and up, which is along
+                x, y and z where z is up.
             eye: where the camera stands, instead; then `target` is what it looks at, (0, 0, 0) if not given.
             up: what is up in the picture.
             lens: the angle from the bottom to the top of the picture, in degrees.
