@@ -163,6 +163,7 @@ pub(crate) fn save_mesh(
         colors: colors
             .map(|given| ColorEncoding::from_str(given).map_err(|e| word("colors", given, e.to_string())))
             .transpose()?,
+        ..ExportOptions::default()
     };
     CallEffort::quiet(py).run(move |_| match format {
         Some(format) => save_with(&path, &mesh, format, &options),

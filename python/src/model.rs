@@ -109,7 +109,7 @@ impl PyModel {
         object: Option<String>,
         parameters: Vec<(String, f64)>,
     ) -> PyResult<Self> {
-        let options = Options { parameters, object };
+        let options = Options { parameters, object, ..Options::default() };
         Ok(Self::read(CallEffort::quiet(py).run(move |_| Scene::load_with(path, &options))?))
     }
 
@@ -122,7 +122,7 @@ impl PyModel {
         object: Option<String>,
         parameters: Vec<(String, f64)>,
     ) -> PyResult<Self> {
-        let options = Options { parameters, object };
+        let options = Options { parameters, object, ..Options::default() };
         let read = move |_: &_| Scene::from_reader(&name, text.as_slice(), &options);
         Ok(Self::read(CallEffort::quiet(py).run(read)?))
     }

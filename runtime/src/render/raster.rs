@@ -70,12 +70,12 @@ pub struct RasterTile {
 }
 
 /// a, b and c of a x + b y + c, for the three edges of a triangle and for its nearness.
-type Planes = [[f32; 3]; 4];
+type EdgePlanes = [[f32; 3]; 4];
 
 /// A triangle to fill.
 struct Patch {
     number: u32,
-    planes: Planes,
+    planes: EdgePlanes,
     /// Samples: the first ones, and those behind the last ones.
     columns: [usize; 2],
     rows: [usize; 2],
@@ -286,8 +286,8 @@ mod tests {
 
     const SIZE: [u32; 2] = [70, 50];
 
-    /// The nearest outer side of a triangle on a ray and its distance, by trying all of them, after Möller and Trumbore
-    /// (1997). `margin` is how far inside of a triangle a ray has to be.
+    /// The nearest outer side of a triangle on a ray and its distance, by trying all of them, after Möller and
+    /// Trumbore (1997). `margin` is how far inside of a triangle a ray has to be.
     fn nearest(mesh: &Mesh, origin: Vector, direction: Vector, margin: f64) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f64)> = None;
         for (number, triangle) in mesh.triangles.iter().enumerate() {
