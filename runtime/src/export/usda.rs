@@ -1,7 +1,8 @@
 //! USDA, the text of Universal Scene Description: one mesh below a transform, which has the origin.
 //!
-//! Numbers are the shortest that give the same f32 back. Attributes are primvars of each vertex: `displayColor`,
-//! which is linear, `st` and `primvars:name` with as many elements as the attribute is wide.
+//! Numbers are the shortest that give the same f32 back. Attributes are primvars of each vertex:
+//! `displayColor`, which is linear, `st` and `primvars:name` with as many elements as the attribute is
+//! wide.
 
 use std::fmt::Display;
 use std::io::Write;
