@@ -10,7 +10,8 @@ use jbt_model::walk::{walk, walk_gradient};
 use jbt_testkit::scene::{assert_reads_back, compiled, run};
 use jbt_text::import::Imported;
 
-/// What a reader may take for a hostile file: a second on a quiet machine, and ten times as long on a loaded one.
+/// What a reader may take for a hostile file: a second on a quiet machine, and ten times as long on a
+/// loaded one.
 pub const SOON: Duration = Duration::from_secs(10);
 
 /// A reader.
