@@ -1,10 +1,12 @@
 //! Loading scenes: a path or the standard input becomes a model, whatever its format.
 
 use std::io;
+use std::sync::Arc;
 
 use jbt::diagnostic::{Severity, Source, SourceText};
 use jbt::text::Options;
-use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query};
+use jbt::text::files::Files;
+use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
@@ -27,7 +29,12 @@ impl LoadedScene {
     /// Reads and parses a scene.
     pub fn load(arguments: &SceneArguments) -> Result<Self, Failure> {
         let path = &arguments.path;
-        let options = Options { parameters: arguments.definitions.clone() };
+        let files = if is_standard(path) {
+            Files::of_standard_input()
+        } else {
+            Files::new(Arc::new(SceneFolder::of(path)))
+        };
+        let options = Options { parameters: arguments.definitions.clone(), files };
         let loaded = if is_standard(path) {
             jbt::Scene::from_reader("<stdin>", io::stdin().lock(), &options)
         } else {

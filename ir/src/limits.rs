@@ -6,6 +6,11 @@
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
+/// Files that one scene may name, directly or through files that it names.
+pub const MAX_NAMED_FILES: usize = 1024;
+/// Bytes of all files that one scene names: particles and grids are some hundred megabytes, and stay in memory.
+/// What is read as text has [`MAX_SCENE_BYTES`], all files of a scene together.
+pub const MAX_NAMED_BYTES: usize = 1 << 30;
 /// Errors that are kept for one file; the rest are counted.
 pub const MAX_ERRORS: usize = 50;
 /// Operators and parentheses of one number expression that wait for their operands.

@@ -153,7 +153,8 @@ fn text(body: &str, head: &str) -> String {
 
 fn tree(text: &str, set: Option<f64>) -> CheckedTree {
     let parameters = set.map(|value| ("p".to_owned(), value)).into_iter().collect();
-    let model = parse(text.as_bytes(), &Options { parameters }).and_then(|model| model.check());
+    let model =
+        parse(text.as_bytes(), &Options { parameters, ..Options::default() }).and_then(|model| model.check());
     model.unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
 }
 

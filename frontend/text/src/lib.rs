@@ -112,6 +112,7 @@ mod block;
 mod color;
 mod expression;
 mod falloff;
+pub mod files;
 mod formula;
 mod hints;
 pub mod import;

@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use super::files::Files;
 use super::hints::foreign_mark;
 use super::lex::{Lexer, Token, TokenKind};
 use super::scope::FormulaScope;
@@ -23,6 +24,8 @@ use jbt_model::tree::Tree;
 pub struct Options {
     /// Values of parameters, by name; the last one of a name counts.
     pub parameters: Vec<(String, f64)>,
+    /// How files are opened that the text names. By default none are.
+    pub files: Files,
 }
 
 /// The state of reading one text.

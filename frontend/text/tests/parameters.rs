@@ -109,7 +109,7 @@ fn parameters_and_expressions_print_as_such() {
         assert!(printed.contains(part), "{part} in {printed}");
     }
     // Another setting is another model, also once it is printed.
-    let options = Options { parameters: vec![("p".to_owned(), 0.25)] };
+    let options = Options { parameters: vec![("p".to_owned(), 0.25)], ..Options::default() };
     let set = parse(text.as_bytes(), &options).unwrap();
     assert_ne!(set, first);
     assert_eq!(model(&print(&set)), set);

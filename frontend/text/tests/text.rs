@@ -30,7 +30,10 @@ fn golden_files(of_errors: bool) -> impl Iterator<Item = (PathBuf, String)> {
 
 fn options(text: &str) -> Options {
     let set = text.lines().filter_map(|line| line.strip_prefix("#! -D ")?.split_once('='));
-    Options { parameters: set.map(|(name, value)| (name.to_owned(), value.parse().unwrap())).collect() }
+    Options {
+        parameters: set.map(|(name, value)| (name.to_owned(), value.parse().unwrap())).collect(),
+        ..Options::default()
+    }
 }
 
 /// The text without marks.
@@ -162,7 +165,7 @@ fn a_graph_prints_as_long_as_it_is() {
 #[test]
 fn parameters_are_listed_and_set() {
     let text = b"jbt 1 param a = 2 param b = a * 3 point { radius b }";
-    let options = Options { parameters: vec![("a".to_owned(), 5.0)] };
+    let options = Options { parameters: vec![("a".to_owned(), 5.0)], ..Options::default() };
     let model = parse(text, &options).unwrap();
     let shown: Vec<_> = model.parameters.iter().map(|p| (p.name(), p.default(), p.value())).collect();
     assert_eq!(shown, [("a", 2.0, 5.0), ("b", 15.0, 15.0)]);
@@ -225,7 +228,7 @@ fn lines_end_as_on_any_system() {
 fn colours_of_screens_become_linear_as_they_are_read() {
     let colored = |color: &str| {
         let text = format!("jbt 1 param r = 1 attribute glass 4 color {color} {{ point {{ radius 1 }} }}");
-        let options = Options { parameters: vec![("r".to_owned(), 0.2)] };
+        let options = Options { parameters: vec![("r".to_owned(), 0.2)], ..Options::default() };
         let model =
             parse(text.as_bytes(), &options).unwrap_or_else(|errors| panic!("{}", marked(&text, &errors)));
         let again = parse(print(&model).as_bytes(), &Options::default()).unwrap();
