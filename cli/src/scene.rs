@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use jbt::diagnostic::{Severity, Source, SourceText};
+use jbt::diagnostic::{Severity, SourceText};
 use jbt::text::Options;
 use jbt::text::files::Files;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
@@ -42,7 +42,7 @@ impl LoadedScene {
         };
         let jbt::Scene { model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
-        let notices: Vec<_> = warnings.iter().map(|one| Message::new(&text.source(), one)).collect();
+        let notices: Vec<_> = warnings.iter().map(|one| Message::in_text(&text, one)).collect();
         let warnings = notices.iter().map(|notice| notice.rendered.clone()).collect();
         Ok(Self { text, model, warnings, notices })
     }
@@ -57,8 +57,8 @@ impl LoadedScene {
     }
 
     /// The text, for messages.
-    pub fn source(&self) -> Source<'_> {
-        self.text.source()
+    pub fn text(&self) -> &SourceText {
+        &self.text
     }
 
     /// Its name, as it stands on the command line.
@@ -68,12 +68,12 @@ impl LoadedScene {
 
     /// Why a task was not done for it.
     pub fn failure(&self, error: &impl Classified) -> Failure {
-        Failure::task(&self.source(), error)
+        Failure::task(&self.text, error)
     }
 
     /// The checked model, or all that is wrong with it.
     pub fn check(&self) -> Result<CheckedTree, Failure> {
-        self.model.check().map_err(|error| Failure::diagnostics(&self.source(), &error))
+        self.model.check().map_err(|error| Failure::diagnostics(&self.text, &error))
     }
 
     /// An evaluator.

@@ -36,7 +36,7 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     let fail = |error: &CompileError| scene.failure(error);
     let purpose = Purpose::Answers(query);
     let Lowered { function, tables } =
-        lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;
+        lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(scene.text(), &diagnostics))?;
     let straight = match arguments.straight {
         false => None,
         true => Some(

@@ -76,11 +76,11 @@ impl Model {
         let mut report = Report::default();
         let (mut parameters, errors) = collect(&self.parameters, &self.iso, &self.root);
         report.extend(errors);
-        parameters::check_names(&mut report, &parameters);
         let values = refresh(&mut parameters).unwrap_or_else(|errors| {
             report.extend(errors);
             ParameterValues::new()
         });
+        parameters::check_names(&mut report, &parameters);
         if !report.is_empty() {
             return Err(report.finish());
         }
@@ -159,6 +159,7 @@ impl Model {
                 // An operator's limit depends on the iso-value, so it is checked again when that changes.
                 dependence.add(id, &Arc::new(written.clone()));
             }
+            let errors = report.count();
             if let Some(formula) = written.formula() {
                 check_words(report, formula, node.span());
             }
@@ -173,6 +174,7 @@ impl Model {
                     NodeKind::Affine(DAffine3::IDENTITY)
                 }
             };
+            report.expanded_in(errors, node.label());
             share_name(&mut kind, &self.attributes);
             let first = waiting.len() - node.children().len();
             let children = Children::from_slice(&waiting[first..]);
@@ -181,7 +183,7 @@ impl Model {
             if tree.is_shared() {
                 ids.insert(tree.identity(), id);
             }
-            nodes.push(CheckedNode { kind, children, span: node.span() });
+            nodes.push(CheckedNode { kind, children, span: node.span(), label: node.label().cloned() });
         }
         nodes
     }

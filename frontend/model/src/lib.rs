@@ -25,6 +25,7 @@ pub mod function;
 #[cfg(any(feature = "glam", feature = "mint"))]
 mod interop;
 pub mod kind;
+pub mod label;
 pub mod map;
 pub mod member;
 pub mod model;

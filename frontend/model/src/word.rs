@@ -14,7 +14,7 @@ pub fn is_statement(word: &str) -> bool {
 }
 
 /// Letters, digits and underscores, beginning with a letter.
-pub(crate) fn is_identifier(name: &str) -> bool {
+pub fn is_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }

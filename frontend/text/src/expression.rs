@@ -13,7 +13,8 @@
 
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
-use super::lex::{Token, TokenKind};
+use super::lex::{COMPARISON, Token, TokenKind};
+use super::program::{COUNT, Value};
 use super::scope::FormulaScope;
 use super::state::Parser;
 use super::words::{CONSTANTS, constant};
@@ -31,6 +32,8 @@ enum Waiting {
     Group,
     /// A function and the place of its first argument on the operand stack.
     Call(Function, u32),
+    /// The place of an element in brackets, of a list with this number.
+    Index(u32),
 }
 
 impl Waiting {
@@ -39,12 +42,12 @@ impl Waiting {
         match self {
             Self::Binary(binary) => binary.strength(),
             Self::Negate => 3,
-            Self::Group | Self::Call(..) => 0,
+            Self::Group | Self::Call(..) | Self::Index(_) => 0,
         }
     }
 
     const fn is_open(self) -> bool {
-        matches!(self, Self::Group | Self::Call(..))
+        matches!(self, Self::Group | Self::Call(..) | Self::Index(_))
     }
 }
 
@@ -82,8 +85,10 @@ struct Stacks {
     operands: Vec<StackedOperand>,
     steps: Vec<Step>,
     waiting: Vec<(Waiting, u32)>,
-    /// How many groups and calls wait.
+    /// How many groups, calls and places of elements wait.
     open: usize,
+    /// The lists whose elements are picked.
+    lists: Vec<Vec<Value>>,
 }
 
 impl Stacks {
@@ -126,6 +131,13 @@ impl Stacks {
                 self.push(value, span);
             }
         }
+    }
+
+    /// A place in brackets, of one of these elements.
+    fn open_index(&mut self, elements: Vec<Value>, at: u32) {
+        self.open += 1;
+        self.waiting.push((Waiting::Index(self.lists.len() as u32), at));
+        self.lists.push(elements);
     }
 
     /// The only operand that is left.
@@ -222,11 +234,16 @@ impl Parser<'_> {
                 }
             }
         }
-        if let Some(&(_, at)) = stacks.waiting.iter().rev().find(|(waiting, _)| waiting.is_open()) {
+        if let Some(&(waiting, at)) = stacks.waiting.iter().rev().find(|(waiting, _)| waiting.is_open()) {
+            let is_index = matches!(waiting, Waiting::Index(_));
             let found = self.describe(self.peek());
+            let compared = self.peek().is(COMPARISON);
             self.report_and_mute(|| {
-                Diagnostic::error(Some(Span::new(at as usize, at as usize + 1)), "this `(` is not closed")
-                    .expected(format!("expected `)` before {found}"))
+                let (opened, closed) = if is_index { ('[', ']') } else { ('(', ')') };
+                let span = Span::new(at as usize, at as usize + 1);
+                let hint = if compared { "; comparisons have no parentheses around them" } else { "" };
+                Diagnostic::error(Some(span), format!("this `{opened}` is not closed"))
+                    .expected(format!("expected `{closed}` before {found}{hint}"))
             });
             return None;
         }
@@ -258,6 +275,18 @@ impl Parser<'_> {
                     stacks.push_variable(variable.ok()?, span);
                     return Some(false);
                 }
+                if self.peek().is(b'[')
+                    && let Some(elements) = self.elements_named(word)
+                {
+                    let at = self.next().start as u32;
+                    stacks.open_index(elements, at);
+                    return Some(true);
+                }
+                if word == COUNT && self.peek().is(b'(') {
+                    let count = self.element_count()?;
+                    stacks.push(count, Span::new(token.start, self.previous_end()));
+                    return Some(false);
+                }
                 let parameter = self.parameter(word).is_some() && !self.peek().is(b'(');
                 let function = Function::named(word).filter(|_| !parameter);
                 if let Some(function) = function.or_else(|| self.falloff_function(word, token)) {
@@ -273,8 +302,10 @@ impl Parser<'_> {
                     stacks.waiting.push((Waiting::Call(function, stacks.operands.len() as u32), at));
                     return Some(true);
                 }
-                if let Some(number) = self.parameter(word) {
-                    stacks.push_number(number, token.span());
+                if let Some(number) = self.parameter(word).cloned() {
+                    self.push_copy(stacks, &number, token.span())?;
+                } else if self.no_number(word, token.span()) {
+                    return None;
                 } else {
                     let value = constant(word).unwrap_or_else(|| self.unknown_number(word, token.span()));
                     stacks.push(value, token.span());
@@ -321,9 +352,20 @@ impl Parser<'_> {
                 stacks.waiting.push((Waiting::Binary(binary), token.start as u32));
                 Some(true)
             }
-            (b')', None) if stacks.open > 0 => {
-                self.next();
+            (b']', None) if stacks.open > 0 => {
                 self.reduce(stacks, 0);
+                let Some(&(Waiting::Index(list), at)) = stacks.waiting.last() else { return None };
+                self.next();
+                stacks.waiting.pop();
+                stacks.open -= 1;
+                self.finish_index(stacks, list, Span::new(at as usize, token.end))
+            }
+            (b')', None) if stacks.open > 0 => {
+                self.reduce(stacks, 0);
+                if matches!(stacks.waiting.last(), Some((Waiting::Index(_), _))) {
+                    return None;
+                }
+                self.next();
                 stacks.open -= 1;
                 if let Some((waiting, at)) = stacks.waiting.pop() {
                     self.finish_group(stacks, waiting, Span::new(at as usize, token.end));
@@ -365,8 +407,51 @@ impl Parser<'_> {
                     let step = right.depends.then_some(Step::Negate);
                     stacks.push_result(-right.value, span, right.first, step);
                 }
-                Waiting::Group | Waiting::Call(..) => stacks.operands.push(right),
+                Waiting::Group | Waiting::Call(..) | Waiting::Index(_) => stacks.operands.push(right),
             }
+        }
+    }
+
+    /// A number that has a name: of a formula, all steps are copied, which counts as text that is read.
+    fn push_copy(&mut self, stacks: &mut Stacks, number: &Number, span: Span) -> Option<()> {
+        let steps = number.formula().map_or(0, |formula| formula.steps().len());
+        if steps > 1 && !self.charge_copy(steps, span) {
+            return None;
+        }
+        stacks.push_number(number, span);
+        Some(())
+    }
+
+    /// The element of a list whose place has just been closed; `span` holds all of it. Returns whether another
+    /// place is wanted, as that is a list, too.
+    fn finish_index(&mut self, stacks: &mut Stacks, list: u32, span: Span) -> Option<bool> {
+        let place = stacks.operands.pop()?;
+        let elements = std::mem::take(&mut stacks.lists[list as usize]);
+        let steps = stacks.steps.split_off(place.first as usize);
+        let number = match place.depends {
+            true => Number::with_formula(place.value, NumberFormula::new(steps, None)),
+            false => place.value.into(),
+        };
+        match self.element(&elements, &ParsedOperand { number, span: place.span })? {
+            Value::Number(number) => {
+                self.push_copy(stacks, &number, span)?;
+                Some(false)
+            }
+            value => match value.elements().filter(|_| self.peek().is(b'[')) {
+                Some(elements) => {
+                    self.next();
+                    stacks.open_index(elements, span.start);
+                    Some(true)
+                }
+                None => {
+                    let kind = value.kind();
+                    self.report_and_mute(|| {
+                        Diagnostic::error(Some(span), format!("this element is {kind}"))
+                            .expected("expected a number")
+                    });
+                    None
+                }
+            },
         }
     }
 

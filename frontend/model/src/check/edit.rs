@@ -173,6 +173,7 @@ impl CheckedModel {
                     let old = &mut nodes[id.0 as usize];
                     is_whole &= !(counts_elsewhere(&old.kind) || counts_elsewhere(&kind));
                     (old.kind, old.span) = (kind, node.span());
+                    old.label = node.label().cloned();
                 }
                 Err(error) => report.add(|| error),
             }
@@ -249,6 +250,7 @@ impl CheckedTree {
                 kind: node.kind.clone(),
                 children: node.children.iter().filter_map(place).collect(),
                 span: node.span,
+                label: node.label.clone(),
             }
         };
         let nodes: Vec<CheckedNode> = left.iter().map(node).collect();
