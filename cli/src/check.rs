@@ -164,8 +164,11 @@ fn in_range(parameter: &Parameter) -> String {
 fn parameters(tree: &CheckedTree) -> String {
     const SHOWN: usize = 20;
     let all = tree.parameters();
-    let mut shown: Vec<String> =
-        all.iter().take(SHOWN).map(|p| format!("{} = {}{}", escape(p.name()), p.value(), in_range(p))).collect();
+    let mut shown: Vec<String> = all
+        .iter()
+        .take(SHOWN)
+        .map(|p| format!("{} = {}{}", escape(p.name()), p.value(), in_range(p)))
+        .collect();
     if all.len() > SHOWN {
         shown.push(format!("and {} more", all.len() - SHOWN));
     }

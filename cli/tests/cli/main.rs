@@ -4,6 +4,7 @@ mod check;
 mod commands;
 mod contour;
 mod far;
+mod files;
 mod folder;
 mod hostile;
 mod manual;

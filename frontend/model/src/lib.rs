@@ -33,6 +33,7 @@ pub mod number;
 pub mod origin;
 pub mod owner;
 pub mod parameter;
+pub mod path;
 mod power;
 pub mod query;
 pub mod report;

@@ -20,9 +20,11 @@ use std::sync::Arc;
 use crate::diagnostic::Span;
 use crate::label::Label;
 use crate::traverse::Visit;
+use crate::word::normalized;
 use crate::written::Written;
 
 mod order;
+mod select;
 mod share;
 
 /// The iso-value of a model when nothing else is said.
@@ -114,7 +116,8 @@ impl Tree {
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         let label = self.node().label().map(|label| Label::clone(label)).unwrap_or_default();
-        self.labelled(Some(Arc::new(Label { name: Some(name.into()), ..label })))
+        let name = Some(normalized(name).into());
+        self.labelled(Some(Arc::new(Label { name, ..label })))
     }
 
     /// The same node with another label.

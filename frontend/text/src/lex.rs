@@ -1,11 +1,12 @@
 //! Bytes to tokens, one at a time: a file is never a list of tokens in memory.
 
 use jbt_model::diagnostic::Span;
+use jbt_model::word::{begins_name, continues_name};
 
 /// The kind of a token.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum TokenKind {
-    /// A name or a keyword: a letter, then letters, digits and underscores.
+    /// A name or a keyword: a letter of any script, then letters, digits and underscores.
     Word,
     /// An unsigned decimal number.
     Number,
@@ -160,13 +161,14 @@ impl<'a> Lexer<'a> {
 
     /// The token behind a place.
     fn scan(&self, from: usize) -> Token {
-        let token = scan(self.text.as_bytes(), from - self.base);
+        let token = scan(self.text, from - self.base);
         Token { kind: token.kind, start: self.base + token.start, end: self.base + token.end }
     }
 }
 
 /// The token behind a byte of a text.
-fn scan(bytes: &[u8], from: usize) -> Token {
+fn scan(text: &str, from: usize) -> Token {
+    let bytes = text.as_bytes();
     let start = skip_blanks(bytes, from);
     let run = |from: usize, test: fn(u8) -> bool| {
         bytes[from..].iter().position(|&b| !test(b)).map_or(bytes.len(), |n| from + n)
@@ -175,7 +177,7 @@ fn scan(bytes: &[u8], from: usize) -> Token {
     let next = bytes.get(start + 1);
     match bytes.get(start) {
         None => token(TokenKind::End, start),
-        Some(b'a'..=b'z' | b'A'..=b'Z') => token(TokenKind::Word, run(start, is_word)),
+        Some(b'a'..=b'z' | b'A'..=b'Z') => token(TokenKind::Word, word_end(text, start)),
         Some(b'.') if next == Some(&b'.') => token(TokenKind::Mark(RANGE), start + 2),
         Some(b'0'..=b'9' | b'.') => match number(bytes, start) {
             // Letters right after a number belong to it: `2x` is a mistake, not two tokens.
@@ -201,7 +203,19 @@ fn scan(bytes: &[u8], from: usize) -> Token {
             ),
         },
         Some(byte) if byte.is_ascii() => token(TokenKind::Unknown, start + 1),
+        Some(_) if text[start..].starts_with(begins_name) => token(TokenKind::Word, word_end(text, start)),
         Some(_) => token(TokenKind::Unknown, run(start, |b| !b.is_ascii())),
+    }
+}
+
+/// The end of a word that begins here.
+fn word_end(text: &str, start: usize) -> usize {
+    let rest = &text.as_bytes()[start..];
+    match rest.iter().position(|&byte| !is_word(byte)) {
+        None => text.len(),
+        Some(n) if rest[n].is_ascii() => start + n,
+        // Most words are ASCII.
+        Some(_) => text[start..].find(|c| !continues_name(c)).map_or(text.len(), |n| start + n),
     }
 }
 

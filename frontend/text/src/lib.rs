@@ -83,7 +83,7 @@
 //! FUNCTION   = a word of [`functions`] ;                  in formulas also FALLOFF, of a distance of which 1 is the end
 //! HEX        = a double quote, "#", 3, 4, 6 or 8 digits in hex, a double quote ;
 //! QUOTED     = a double quote, text of one line, a double quote ;
-//! NAME       = letter { letter | digit | "_" } ;
+//! NAME       = letter { letter | mark | digit | "_" } ;  letters of any script (XID of Unicode), in the normal form C
 //! ```
 //!
 //! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of
@@ -151,9 +151,13 @@ mod texts;
 mod value;
 mod words;
 
+use std::borrow::Cow;
+
+use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostics, SourceText};
 pub use jbt_model::function::Function;
 use jbt_model::model::Model;
+use jbt_model::word::normalized;
 
 pub use print::print;
 pub use state::Options;
@@ -173,11 +177,22 @@ pub use words::COMMON_FIELDS;
 /// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the
 /// others. Whether the model makes sense, [`check`](jbt_model::check) says.
 pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
+    let text = &*in_normal_form(text);
     let texts = Texts::new(text.len());
     let source = || Some(SourceText::new(SourceText::UNNAMED, text).including(texts.included()));
     match parse::read(text, &texts, options) {
         Ok(model) => Ok(Model { source: source(), ..model }),
         Err(list) => Err(Diagnostics::new(list, source())),
+    }
+}
+
+/// The text in the normal form C of Unicode, as names have it; messages quote it so. What is no text, or is too
+/// long for one, stays as it is.
+fn in_normal_form(text: &[u8]) -> Cow<'_, [u8]> {
+    let known = (text.len() <= MAX_SCENE_BYTES).then(|| std::str::from_utf8(text).ok()).flatten();
+    match known.map(normalized) {
+        Some(Cow::Owned(text)) => Cow::Owned(text.into_bytes()),
+        Some(Cow::Borrowed(_)) | None => Cow::Borrowed(text),
     }
 }
 

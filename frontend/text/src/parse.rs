@@ -17,7 +17,7 @@ use jbt_model::number::{Number, NumberFormula};
 use jbt_model::parameter::{Fixture, Parameter, ParameterRange, not_finite, unknown};
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
-use jbt_model::word::is_statement;
+use jbt_model::word::{is_statement, normalized};
 
 /// The model of a text, or everything that is wrong with it.
 pub(super) fn read(text: &[u8], texts: &Texts, options: &Options) -> Result<Model, Vec<Diagnostic>> {
@@ -256,7 +256,7 @@ impl<'a> Parser<'a> {
         } else if self.program.value(name).is_some() {
             self.report(|| Diagnostic::error(Some(span), format!("a second `{}`", clip(name))));
         } else {
-            let set = self.options.parameters.iter().rev().find(|(set, _)| set == name);
+            let set = self.options.parameters.iter().rev().find(|(set, _)| normalized(set) == name);
             let setting = set.map(|&(_, value)| value);
             let parameter = Parameter::declared(name, default, setting, span);
             let parameter = if lost { parameter } else { self.control(parameter) };
@@ -476,7 +476,7 @@ impl<'a> Parser<'a> {
     /// Values from outside are for parameters that exist, and are numbers.
     fn check_options(&mut self) {
         for (name, value) in &self.options.parameters {
-            if !self.references.contains_key(name.as_str()) {
+            if !self.references.contains_key(&*normalized(name)) {
                 self.report_with(|parser| unknown(name, &parser.parameters));
             } else if !value.is_finite() {
                 self.report(|| not_finite(name));

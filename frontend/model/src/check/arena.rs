@@ -30,6 +30,14 @@ pub struct CheckedNode {
     pub label: Option<Arc<Label>>,
 }
 
+impl CheckedNode {
+    /// Its name, if it has one.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.label.as_ref()?.name.as_deref()
+    }
+}
+
 /// Which nodes of a tree differ from those of the tree that it was made of.
 #[derive(Clone, Debug)]
 pub(super) struct Lineage {

@@ -14,6 +14,7 @@ use crate::kind::NodeKind;
 use crate::number::{Number, NumberFormula, ParameterValues};
 use crate::parameter::{Fixture, Parameter, is_name, not_finite, refresh, unknown};
 use crate::report::{Report, clip};
+use crate::word::normalized;
 use crate::written::Written;
 
 /// The kind of a node for these values of parameters.
@@ -129,7 +130,7 @@ impl CheckedTree {
         let mut report = Report::default();
         let mut parameters = self.parameters.clone();
         for &(name, value) in settings {
-            match self.dependence.names.get(name) {
+            match self.dependence.names.get(&*normalized(name)) {
                 None => report.add(|| unknown(name, &self.parameters)),
                 Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
                 Some(&index) => parameters[index].setting = Some(value),

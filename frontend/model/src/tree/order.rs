@@ -9,7 +9,13 @@ use crate::written::Written;
 
 /// Any tree.
 #[derive(Clone, Copy)]
-struct PlainNodes<'a>(PhantomData<&'a Tree>);
+pub(super) struct PlainNodes<'a>(PhantomData<&'a Tree>);
+
+impl PlainNodes<'_> {
+    pub(super) const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
 
 impl<'a> Nodes for PlainNodes<'a> {
     type Node = &'a Tree;

@@ -13,6 +13,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::label::Call;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
+use jbt_model::word::normalized;
 
 /// A file that has been read.
 pub(super) struct Included {
@@ -97,7 +98,8 @@ impl<'a> Parser<'a> {
 
     /// The text of a file, if it is a scene. What is no scene is not quoted.
     fn scene_text(&mut self, file: &Arc<NamedFile>, token: Token) -> Option<&'a TextFile> {
-        let text = String::from_utf8(file.bytes.clone()).ok().filter(|text| {
+        let text = std::str::from_utf8(&file.bytes).ok().map(|text| normalized(text).into_owned());
+        let text = text.filter(|text| {
             let place = Place::start(text, 0);
             let mut lexer = crate::lex::Lexer::new(text);
             lexer.jump(place);
@@ -112,7 +114,7 @@ impl<'a> Parser<'a> {
             });
             return None;
         };
-        self.program.left -= file.bytes.len().min(self.program.left);
+        self.program.left = self.program.left.saturating_sub(text.len());
         self.program.texts.add(Arc::clone(file), text)
     }
 
