@@ -1,5 +1,6 @@
 //! `jbt check`: everything that is wrong with scenes, or a few lines about each that nothing is wrong with.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -24,7 +25,8 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     }
     let mut told = Findings::default();
     for path in &arguments.scenes {
-        let scene = SceneArguments { path: path.clone(), definitions: arguments.definitions.clone() };
+        let (definitions, parts) = (arguments.definitions.clone(), arguments.parts.clone());
+        let scene = SceneArguments { path: path.clone(), definitions, parts };
         let checked = check(&scene, quiet || arguments.json);
         if arguments.json {
             told.add(path, &checked);
@@ -113,6 +115,7 @@ impl Checked {
             "instances": self.instances,
             "iso": tree.iso(),
             "parameters": parameters.collect::<Map<String, Value>>(),
+            "names": names(tree),
             "controls": controls.collect::<Map<String, Value>>(),
             "bounds": bounds,
             "origin": tree.origin().point(),
@@ -133,10 +136,29 @@ impl Checked {
         }
         let _ =
             writeln!(out, "  bounds       {}{}", bounds(tree.support()), lattice::origin_line(tree.origin()));
+        let names = names(tree);
+        if !names.is_empty() {
+            let _ = writeln!(out, "  names        {}", shortened(&names));
+        }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
         out
     }
+}
+
+/// The names of the nodes, each once.
+fn names(tree: &CheckedTree) -> BTreeSet<&str> {
+    tree.names().collect()
+}
+
+/// The first of these names, and how many more there are.
+fn shortened(names: &BTreeSet<&str>) -> String {
+    const SHOWN: usize = 20;
+    let mut shown: Vec<String> = names.iter().take(SHOWN).map(|name| escape(name)).collect();
+    if names.len() > SHOWN {
+        shown.push(format!("and {} more", names.len() - SHOWN));
+    }
+    shown.join(", ")
 }
 
 /// What an interface needs to know of a parameter besides its value: `fixed` ones take reading the scene again.

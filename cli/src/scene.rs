@@ -8,7 +8,7 @@ use jbt::text::Options;
 use jbt::text::files::Files;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
-use crate::arguments::SceneArguments;
+use crate::arguments::{PartArguments, SceneArguments};
 use crate::failure::Failure;
 use crate::message::Message;
 use crate::output::{highlight, tell};
@@ -40,11 +40,23 @@ impl LoadedScene {
         } else {
             jbt::Scene::load_with(path, &options)
         };
-        let jbt::Scene { model, warnings, text, .. } =
+        let jbt::Scene { mut model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
+        let PartArguments { only, without } = &arguments.parts;
+        for part in without {
+            model = model.without(part).map_err(|error| Failure::scene(&path.display(), &error))?;
+        }
+        if let Some(part) = only {
+            model = model.only(part).map_err(|error| Failure::scene(&path.display(), &error))?;
+        }
         let notices: Vec<_> = warnings.iter().map(|one| Message::in_text(&text, one)).collect();
         let warnings = notices.iter().map(|notice| notice.rendered.clone()).collect();
         Ok(Self { text, model, warnings, notices })
+    }
+
+    /// What a mesh of it is called: the part that is asked for, or the name of the root.
+    pub fn part_name<'a>(&'a self, parts: &'a PartArguments) -> Option<&'a str> {
+        parts.only.as_deref().or_else(|| self.model.root.node().name())
     }
 
     /// Tells people what is odd about the text.

@@ -14,6 +14,20 @@ pub struct SceneArguments {
     /// Set a parameter of a .jbt text; the value is a number or an expression of numbers, as 2*pi
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     pub definitions: Vec<(String, f64)>,
+    /// Parts of it.
+    #[command(flatten)]
+    pub parts: PartArguments,
+}
+
+/// Which parts of a scene count.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PartArguments {
+    /// Only the parts of this name, where they are; a path as body/arm.1/hand tells parts of one name apart
+    #[arg(long, value_name = "PATH")]
+    pub only: Option<String>,
+    /// Not the parts of this name or path; may be given several times
+    #[arg(long, value_name = "PATH")]
+    pub without: Vec<String>,
 }
 
 pub(super) fn definition(text: &str) -> Result<(String, f64), String> {

@@ -6,7 +6,7 @@ use clap::Args;
 use clap_complete::Shell;
 use jbt::Query;
 
-use super::scene::definition;
+use super::scene::{PartArguments, definition};
 use super::words::queries;
 use super::{LatticeArguments, LevelName, SceneArguments};
 
@@ -139,6 +139,9 @@ pub struct CheckArguments {
     /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     pub definitions: Vec<(String, f64)>,
+    /// Parts of each.
+    #[command(flatten)]
+    pub parts: PartArguments,
     /// Print one JSON object instead of messages and summaries
     #[arg(long)]
     pub json: bool,

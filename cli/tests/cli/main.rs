@@ -8,6 +8,7 @@ mod files;
 mod folder;
 mod hostile;
 mod manual;
+mod names;
 mod outputs;
 mod render;
 mod signals;

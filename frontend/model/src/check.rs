@@ -46,6 +46,7 @@ mod node;
 mod numbers;
 mod order;
 mod parameters;
+mod place;
 mod tree;
 
 pub use arena::{CheckedNode, Children, NodeId};
@@ -58,6 +59,7 @@ pub use node::MIN_RECIPROCAL_CONDITION;
 use node::check_node;
 use numbers::{check_numbers, check_words};
 use parameters::check_iso;
+use place::{check_name, way_to};
 pub use tree::CheckedTree;
 
 impl Model {
@@ -176,7 +178,11 @@ impl Model {
                     NodeKind::Affine(DAffine3::IDENTITY)
                 }
             };
+            check_name(report, node);
             report.expanded_in(errors, node.label());
+            if node.span().is_none() {
+                report.stands_at(errors, || way_to(&self.root, tree));
+            }
             share_name(&mut kind, &self.attributes);
             let first = waiting.len() - node.children().len();
             let children = Children::from_slice(&waiting[first..]);

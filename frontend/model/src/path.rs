@@ -53,8 +53,14 @@ impl NodePath {
         })
     }
 
+    /// The same names, of any place.
+    pub(crate) fn of_any_place(&self) -> Self {
+        let element = |element: &PathElement| PathElement { name: element.name.clone(), place: None };
+        Self(self.0.iter().map(element).collect())
+    }
+
     /// Whether a way of names from the root ends with this path.
-    fn ends(&self, way: &[Step<'_>]) -> bool {
+    pub(crate) fn ends(&self, way: &[Step<'_>]) -> bool {
         let fits = |(element, step): (&PathElement, &Step<'_>)| {
             element.name == step.name && element.place.is_none_or(|place| place == step.place)
         };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use jbt_ir::limits::MAX_ERRORS;
 
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Note, Span};
 use crate::label::Label;
 
 /// Diagnostics of one reader.
@@ -39,6 +39,18 @@ impl Report {
             if !self.kept.iter().any(same) {
                 self.kept.push(Diagnostic { notes: calls.notes(), ..diagnostic });
             }
+        }
+    }
+
+    /// Says of all messages without a place that were added since there were so many where their node stands.
+    pub(crate) fn stands_at(&mut self, since: usize, way: impl FnOnce() -> String) {
+        let new = self.kept.get_mut(since..).unwrap_or_default();
+        if new.is_empty() {
+            return;
+        }
+        let message = format!("at {}", way());
+        for diagnostic in new.iter_mut().filter(|one| one.span.is_none()) {
+            diagnostic.notes.push(Note { span: None, message: message.clone() });
         }
     }
 

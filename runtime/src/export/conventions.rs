@@ -135,10 +135,12 @@ impl ColorEncoding {
 
 /// What a file is like: what options say, else the conventions of its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FileChoices {
+pub(super) struct FileChoices<'a> {
     pub up: Up,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,
+    /// What the mesh is called, where the format has a place for it.
+    pub name: Option<&'a str>,
 }
 
 impl fmt::Display for Up {

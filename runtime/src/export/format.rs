@@ -33,7 +33,7 @@ macro_rules! formats {
             pub(super) fn write(
                 self,
                 mesh: &Mesh,
-                choices: FileChoices,
+                choices: FileChoices<'_>,
                 out: &mut impl Write,
             ) -> Result<(), WriteError> {
                 match self { $( Format::$variant => $module::write(mesh, choices, out), )+ }
@@ -77,13 +77,16 @@ impl Format {
 
 /// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what
 /// [`Conventions`] say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExportOptions {
     /// The axis of the file that points up.
     pub up: Option<Up>,
     /// What the numbers of colours mean. A format without colours does not care.
     pub colors: Option<ColorEncoding>,
+    /// What the mesh is called: the name of the node in a `.glb`, of the object in an `.obj`. Other formats
+    /// have no place for it.
+    pub name: Option<String>,
 }
 
 impl ExportOptions {
@@ -100,9 +103,10 @@ impl ExportOptions {
     }
 }
 
-impl FileChoices {
-    pub(super) fn new(format: Format, options: &ExportOptions) -> Self {
-        Self { up: options.up_in(format), colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear) }
+impl<'a> FileChoices<'a> {
+    pub(super) fn new(format: Format, options: &'a ExportOptions) -> Self {
+        let colors = options.colors_in(format).unwrap_or(ColorEncoding::Linear);
+        Self { up: options.up_in(format), colors, name: options.name.as_deref() }
     }
 }
 

@@ -52,9 +52,13 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Node,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
-    let (json, binary) = describe(mesh, choices.up, &attributes);
+    let (mut json, binary) = describe(mesh, choices.up, &attributes);
+    if let Some(name) = choices.name.filter(|_| binary > 0) {
+        json["nodes"][0]["name"] = json!(name);
+        json["meshes"][0]["name"] = json!(name);
+    }
     // Printing a JSON value cannot fail.
     let mut text = json.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -90,7 +94,7 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
 
 fn write_binary(
     mesh: &Mesh,
-    choices: FileChoices,
+    choices: FileChoices<'_>,
     attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

@@ -22,9 +22,14 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Digits,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, colors: encoding, .. } = choices;
     writeln!(out, "# jbt, {up} up")?;
+    if let Some(name) = choices.name {
+        // A blank would end the name for some readers.
+        let name = name.replace(|c: char| c.is_whitespace() || c.is_control(), "_");
+        writeln!(out, "o {name}")?;
+    }
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
     }
@@ -57,7 +62,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    FileChoices { up, colors: encoding }: FileChoices,
+    FileChoices { up, colors: encoding, .. }: FileChoices<'_>,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

@@ -26,8 +26,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Digits,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding } = choices;
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, colors: encoding, .. } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;

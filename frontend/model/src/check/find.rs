@@ -46,7 +46,8 @@ impl CheckedTree {
         let path = NodePath::parse(path).map_err(|error| vec![error])?;
         let mut found = Vec::new();
         let mut ways: Vec<Vec<Step<'_>>> = Vec::new();
-        let searched = search(self, self.root(), &path, true, |met, above, way| {
+        // All places of these names, so that it is known where a name alone will do.
+        let searched = search(self, self.root(), &path.of_any_place(), true, |met, above, way| {
             if let Met::Found(node) = met {
                 let above = above.iter().map(|&(node, child)| (node, child as u32)).collect();
                 found.push(FoundNode { node, above, path: String::new() });
@@ -54,11 +55,13 @@ impl CheckedTree {
             }
         });
         searched.map_err(|_| vec![too_many(&path)])?;
-        if found.is_empty() {
-            return Err(vec![nowhere(&path, self.names())].into());
-        }
         for (index, one) in found.iter_mut().enumerate() {
             one.path = exact(&ways, index);
+        }
+        let mut ways = ways.iter();
+        found.retain(|_| ways.next().is_some_and(|way| path.ends(way)));
+        if found.is_empty() {
+            return Err(vec![nowhere(&path, self.names())].into());
         }
         Ok(found)
     }

@@ -33,7 +33,8 @@ impl<'a> Parser<'a> {
             TokenKind::Word => {
                 let word = self.text(token);
                 let called = self.peek_behind().is(b'(');
-                if is_statement(word) {
+                // A name in front of a node.
+                if is_statement(word) || self.peek_behind().is(b':') {
                     return false;
                 }
                 if called && (Function::named(word).is_some() || word == "srgb" || word == COUNT) {
