@@ -7,6 +7,7 @@ mod render;
 mod scene;
 mod space;
 mod tools;
+mod wanted;
 mod words;
 mod work;
 
@@ -19,6 +20,8 @@ pub use space::LatticeArguments;
 pub use tools::{
     CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
 };
+pub use wanted::Wanted;
+use wanted::WantedParser;
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
@@ -29,7 +32,7 @@ use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
-use words::{queries, words};
+use words::words;
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -197,9 +200,9 @@ pub struct SampleArguments {
     /// Where the samples go.
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -217,9 +220,9 @@ pub struct EvalArguments {
     /// CSV file of the points; `-` is the standard input
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,

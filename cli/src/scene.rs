@@ -3,12 +3,12 @@
 use std::io;
 use std::sync::Arc;
 
-use jbt::diagnostic::{Severity, SourceText};
+use jbt::diagnostic::{Diagnostic, Severity, SourceText};
 use jbt::text::Options;
 use jbt::text::files::Files;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
-use crate::arguments::{PartArguments, SceneArguments};
+use crate::arguments::{PartArguments, SceneArguments, Wanted};
 use crate::failure::Failure;
 use crate::message::Message;
 use crate::output::{highlight, tell};
@@ -86,6 +86,17 @@ impl LoadedScene {
     /// The checked model, or all that is wrong with it.
     pub fn check(&self) -> Result<CheckedTree, Failure> {
         self.model.check().map_err(|error| Failure::diagnostics(&self.text, &error))
+    }
+
+    /// The checked model, as far as something is wanted of it.
+    pub fn check_for(&self, wanted: &Wanted) -> Result<CheckedTree, Failure> {
+        wanted.of(self.check()?).map_err(|error| {
+            let words = |one: &Diagnostic| {
+                let help = one.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
+                format!("{}{help}; answers are {}", one.message, Query::EVERY.map(Query::name).join(", "))
+            };
+            Failure::Usage(error.first().map(words).unwrap_or_default())
+        })
     }
 
     /// An evaluator.

@@ -22,14 +22,14 @@ const NOT_STRAIGHT: &str = "the scene has no straight code: it has no formulas o
 
 /// Runs the command.
 pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
-    let query = arguments.query;
+    let query = arguments.query.query;
     let stage = arguments.stage.as_str();
     if !stages(query).any(|(name, _)| name == stage) {
         return Err(Failure::Usage(unknown(stage, query)));
     }
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
-    let tree = scene.check()?;
+    let tree = scene.check_for(&arguments.query)?;
     if stage == TREE {
         return print(text::print(&scene.model).trim_end());
     }

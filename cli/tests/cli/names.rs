@@ -60,7 +60,9 @@ fn files_have_names_of_parts() {
     let folder = folder();
     let names = |arguments: &[&str]| {
         let mesh = |file: &str| {
-            folder.jbt(&[&["mesh", "robot.jbt", "-o", file, "--force", "--cell", "0.2"], arguments].concat()).code(0);
+            folder
+                .jbt(&[&["mesh", "robot.jbt", "-o", file, "--force", "--cell", "0.2"], arguments].concat())
+                .code(0);
             folder.read(file)
         };
         let glb = mesh("a.glb");

@@ -15,8 +15,8 @@
 //!   their numbers.
 //! * Every affine map is invertible, and the numbers of its inverse are finite in f32.
 //! * The origin has finite coordinates.
-//! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
-//!   and fit its width.
+//! * The first attribute group is `color` with three reals, unless other groups alone were
+//!   [chosen](CheckedTree::of_attributes); names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
 //!   leaves, where a leaf counts once more for each piece of its skeleton.
 
@@ -37,6 +37,7 @@ use crate::parameter::{collect, refresh};
 use crate::report::Report;
 
 mod arena;
+mod chosen;
 mod dependence;
 mod edit;
 mod fields;
