@@ -99,6 +99,16 @@ impl LoadedScene {
         })
     }
 
+    /// The checked model with a colour for each leaf, in the group of this name, where that leaf decides.
+    pub fn owner_colors(&self, name: &str) -> Result<CheckedTree, Failure> {
+        let tree = self.check()?;
+        let has_own = tree.attributes().iter().any(|group| &*group.name == name);
+        if has_own {
+            return Ok(tree);
+        }
+        tree.with_owner_colors().map_err(|error| Failure::diagnostics(&self.text, &error))
+    }
+
     /// An evaluator.
     pub fn evaluator(&self, compiled: &Compiled, query: Query) -> Result<Evaluator, Failure> {
         compiled.evaluator(query).map_err(|error| self.failure(&error))

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use clap::builder::{PossibleValue, TypedValueParser};
+use jbt::tree::OWNER;
 use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
 /// Answers, and the groups of attributes among them if not all are wanted.
@@ -40,10 +41,10 @@ impl Wanted {
     /// # Errors
     /// A word that is neither that of an answer nor the name of a group.
     pub fn of(&self, tree: CheckedTree) -> Result<CheckedTree, Diagnostics> {
-        match &self.groups {
-            None => Ok(tree),
-            Some(groups) => tree.of_attributes(groups),
-        }
+        let Some(groups) = &self.groups else { return Ok(tree) };
+        let has_own = tree.attributes().iter().any(|group| &*group.name == OWNER);
+        let asks_owner = groups.iter().any(|name| name == OWNER);
+        if asks_owner && !has_own { tree.with_owners()? } else { tree }.of_attributes(groups)
     }
 }
 
