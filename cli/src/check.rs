@@ -161,7 +161,8 @@ fn shortened(names: &BTreeSet<&str>) -> String {
     shown.join(", ")
 }
 
-/// What an interface needs to know of a parameter besides its value: `fixed` ones take reading the scene again.
+/// What an interface needs to know of a parameter besides its value: `fixed` ones take reading the scene
+/// again.
 fn control(parameter: &Parameter) -> Value {
     let range = parameter.range();
     json!({

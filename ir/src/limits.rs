@@ -7,7 +7,8 @@
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
 /// Bytes that each turn of a loop, each call of a definition, and each node of what it stands for count for,
-/// besides the text that is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer than the longest text.
+/// besides the text that is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer
+/// than the longest text.
 pub const EXPANSION_BYTES: usize = 128;
 /// Calls and loops of a text that may be open in each other.
 pub const MAX_EXPANSION_DEPTH: usize = 256;

@@ -20,7 +20,7 @@
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
 //!   leaves, where a leaf counts once more for each piece of its skeleton.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::DAffine3;
@@ -35,6 +35,7 @@ use crate::number::ParameterValues;
 use crate::origin::ModelOrigin;
 use crate::parameter::{collect, refresh};
 use crate::report::Report;
+use crate::tree::Node;
 
 mod arena;
 mod chosen;
@@ -170,17 +171,7 @@ impl Model {
             if let Some(formula) = written.formula() {
                 check_words(report, formula, node.span());
             }
-            let mut kind = match parameters::evaluate(written, values, iso, node.span()) {
-                Ok(kind) => {
-                    check_node(report, &kind, node.children().len(), node.span(), &groups, iso);
-                    kind
-                }
-                Err(error) => {
-                    report.add(|| error);
-                    // A placeholder: the check has failed.
-                    NodeKind::Affine(DAffine3::IDENTITY)
-                }
-            };
+            let mut kind = evaluated(report, node, (iso, values), &groups);
             check_name(report, node);
             report.expanded_in(errors, node.label());
             if node.span().is_none() {
@@ -197,6 +188,25 @@ impl Model {
             nodes.push(CheckedNode { kind, children, span: node.span(), label: node.label().cloned() });
         }
         nodes
+    }
+}
+
+/// What a node means, checked by itself; a placeholder after an error.
+fn evaluated(
+    report: &mut Report,
+    node: &Node,
+    (iso, values): (f64, &ParameterValues),
+    groups: &BTreeMap<&str, usize>,
+) -> NodeKind {
+    match parameters::evaluate(node.written(), values, iso, node.span()) {
+        Ok(kind) => {
+            check_node(report, &kind, node.children().len(), node.span(), groups, iso);
+            kind
+        }
+        Err(error) => {
+            report.add(|| error);
+            NodeKind::Affine(DAffine3::IDENTITY)
+        }
     }
 }
 

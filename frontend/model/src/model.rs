@@ -30,8 +30,9 @@ pub struct Model {
     pub comments: Comments,
 }
 
-/// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `param NAME`, `attribute NAME`,
-/// `let NAME`, and `root` for the node of the model. A comment is lines that begin with `#`, and empty ones.
+/// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `param NAME`, `attribute
+/// NAME`, `let NAME`, and `root` for the node of the model. A comment is lines that begin with `#`, and empty
+/// ones.
 pub type Comments = BTreeMap<String, Arc<str>>;
 
 impl Model {

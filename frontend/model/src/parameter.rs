@@ -164,8 +164,8 @@ impl Parameter {
 }
 
 impl PartialEq for Parameter {
-    /// The same name and range, and a value that comes from the same number: one that is set to its default is
-    /// one that has it.
+    /// The same name and range, and a value that comes from the same number: one that is set to its default
+    /// is one that has it.
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
             && self.range == other.range

@@ -14,15 +14,15 @@
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
 use super::lex::{COMPARISON, Token, TokenKind};
-use super::program::{COUNT, Value};
-use super::scope::FormulaScope;
+use super::program::Value;
 use super::state::Parser;
-use super::words::{CONSTANTS, constant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 pub use jbt_model::function::Function;
 use jbt_model::number::{Binary, Number, NumberFormula, Step, Variable};
-use jbt_model::report::{clip, nearest};
+use jbt_model::report::clip;
 use jbt_model::word::is_statement;
+
+mod word;
 
 /// What waits on the operator stack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -267,51 +267,7 @@ impl Parser<'_> {
                 self.expected_at(token, "expected a number");
                 None
             }
-            TokenKind::Word => {
-                self.next();
-                let word = self.text(token);
-                if let Some(variable) = self.variable(word, token) {
-                    let span = Span::new(token.start, self.previous_end());
-                    stacks.push_variable(variable.ok()?, span);
-                    return Some(false);
-                }
-                if self.peek().is(b'[')
-                    && let Some(elements) = self.elements_named(word)
-                {
-                    let at = self.next().start as u32;
-                    stacks.open_index(elements, at);
-                    return Some(true);
-                }
-                if word == COUNT && self.peek().is(b'(') {
-                    let count = self.element_count()?;
-                    stacks.push(count, Span::new(token.start, self.previous_end()));
-                    return Some(false);
-                }
-                let parameter = self.parameter(word).is_some() && !self.peek().is(b'(');
-                let function = Function::named(word).filter(|_| !parameter);
-                if let Some(function) = function.or_else(|| self.falloff_function(word, token)) {
-                    if !self.peek().is(b'(') {
-                        self.report_and_mute(|| {
-                            Diagnostic::error(Some(token.span()), format!("`{word}` is a function"))
-                                .expected(format!("expected its arguments: {word}(...)"))
-                        });
-                        return None;
-                    }
-                    self.next();
-                    stacks.open += 1;
-                    stacks.waiting.push((Waiting::Call(function, stacks.operands.len() as u32), at));
-                    return Some(true);
-                }
-                if let Some(number) = self.parameter(word).cloned() {
-                    self.push_copy(stacks, &number, token.span())?;
-                } else if self.no_number(word, token.span()) {
-                    return None;
-                } else {
-                    let value = constant(word).unwrap_or_else(|| self.unknown_number(word, token.span()));
-                    stacks.push(value, token.span());
-                }
-                Some(false)
-            }
+            TokenKind::Word => self.word_operand(stacks),
             TokenKind::Mark(b'-') => {
                 self.next();
                 stacks.waiting.push((Waiting::Negate, at));
@@ -412,49 +368,6 @@ impl Parser<'_> {
         }
     }
 
-    /// A number that has a name: of a formula, all steps are copied, which counts as text that is read.
-    fn push_copy(&mut self, stacks: &mut Stacks, number: &Number, span: Span) -> Option<()> {
-        let steps = number.formula().map_or(0, |formula| formula.steps().len());
-        if steps > 1 && !self.charge_copy(steps, span) {
-            return None;
-        }
-        stacks.push_number(number, span);
-        Some(())
-    }
-
-    /// The element of a list whose place has just been closed; `span` holds all of it. Returns whether another
-    /// place is wanted, as that is a list, too.
-    fn finish_index(&mut self, stacks: &mut Stacks, list: u32, span: Span) -> Option<bool> {
-        let place = stacks.operands.pop()?;
-        let elements = std::mem::take(&mut stacks.lists[list as usize]);
-        let steps = stacks.steps.split_off(place.first as usize);
-        let number = match place.depends {
-            true => Number::with_formula(place.value, NumberFormula::new(steps, None)),
-            false => place.value.into(),
-        };
-        match self.element(&elements, &ParsedOperand { number, span: place.span })? {
-            Value::Number(number) => {
-                self.push_copy(stacks, &number, span)?;
-                Some(false)
-            }
-            value => match value.elements().filter(|_| self.peek().is(b'[')) {
-                Some(elements) => {
-                    self.next();
-                    stacks.open_index(elements, span.start);
-                    Some(true)
-                }
-                None => {
-                    let kind = value.kind();
-                    self.report_and_mute(|| {
-                        Diagnostic::error(Some(span), format!("this element is {kind}"))
-                            .expected("expected a number")
-                    });
-                    None
-                }
-            },
-        }
-    }
-
     /// Computes a group or a call whose parenthesis has just been closed; `span` holds all of it.
     fn finish_group(&mut self, stacks: &mut Stacks, waiting: Waiting, span: Span) {
         let Waiting::Call(function, first) = waiting else {
@@ -510,24 +423,5 @@ impl Parser<'_> {
         let finite =
             if value.is_finite() { Ok(value) } else { Err(format!("{} is too large", clip(digits))) };
         self.computed(finite, span)
-    }
-
-    fn unknown_number(&mut self, word: &str, span: Span) -> f64 {
-        self.report_with(|parser| {
-            let builtin = Function::ALL
-                .iter()
-                .map(|function| function.name())
-                .chain(CONSTANTS.iter().map(|(name, _)| *name));
-            let error = Diagnostic::error(Some(span), format!("no parameter is named `{}`", clip(word)));
-            if parser.scope.is_some() && parser.lets.contains_key(word) {
-                return error.expected(format!("perhaps `field({word})`"));
-            }
-            let here = parser.scope.iter().flat_map(FormulaScope::words);
-            match nearest(word, parser.parameter_names().chain(builtin).chain(here)) {
-                Some(near) => error.expected(format!("perhaps `{near}`")),
-                None => error.expected(format!("declare it above: param {} = 1", clip(word))),
-            }
-        });
-        f64::NAN
     }
 }

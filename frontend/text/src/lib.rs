@@ -146,6 +146,7 @@ mod primitive;
 mod print;
 mod program;
 mod scope;
+mod stack;
 mod state;
 mod texts;
 mod value;
@@ -186,8 +187,8 @@ pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
     }
 }
 
-/// The text in the normal form C of Unicode, as names have it; messages quote it so. What is no text, or is too
-/// long for one, stays as it is.
+/// The text in the normal form C of Unicode, as names have it; messages quote it so. What is no text, or is
+/// too long for one, stays as it is.
 fn in_normal_form(text: &[u8]) -> Cow<'_, [u8]> {
     let known = (text.len() <= MAX_SCENE_BYTES).then(|| std::str::from_utf8(text).ok()).flatten();
     match known.map(normalized) {

@@ -2,7 +2,7 @@
 
 use jbt_ir::limits::MAX_NODES;
 
-use super::block::{Begun, BlockFrame, Frame, Head, NodeStack};
+use super::block::{Begun, BlockFrame, Head};
 use super::expression::ExpressionPlace;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
@@ -33,156 +33,6 @@ impl<'a> Parser<'a> {
         let fixed = fixed_words().map(|word| -> &str { word });
         let own = self.attributes.iter().map(|group| &*group.name);
         fixed.chain(own).chain(self.program.definition_names())
-    }
-
-    /// One node with everything below it.
-    pub(super) fn tree(&mut self) -> Tree {
-        let start = self.peek();
-        let mut trees = self.nodes();
-        match (trees.pop(), trees.is_empty()) {
-            (Some(tree), true) => tree,
-            (last, _) => {
-                let count = trees.len() + usize::from(last.is_some());
-                self.report(|| {
-                    Diagnostic::error(Some(start.span()), format!("this stands for {count} nodes"))
-                        .expected("expected one; `sum { .. }` around them makes them one")
-                });
-                self.broken.clone()
-            }
-        }
-    }
-
-    /// What is next with everything below it: one node, or those that a call, a loop or a condition stands
-    /// for.
-    pub(super) fn nodes(&mut self) -> Vec<Tree> {
-        let mut stack = NodeStack::default();
-        loop {
-            if !self.step(&mut stack) {
-                return vec![self.broken.clone()];
-            }
-            if stack.frames.is_empty() {
-                return stack.finished;
-            }
-        }
-    }
-
-    /// One step: a word begins something, or a brace ends it. False if reading cannot go on.
-    fn step(&mut self, stack: &mut NodeStack<'a>) -> bool {
-        let token = self.peek();
-        let word = self.peek_word();
-        let in_body = matches!(stack.frames.last(), Some(Frame::Body(_)));
-        match token.kind {
-            TokenKind::Word if in_body && word == Some("let") => {
-                self.report_again();
-                self.next();
-                self.local_let(stack);
-            }
-            TokenKind::Word if !word.is_some_and(|word| self.begins_statement(word)) => {
-                let begun = self.begin();
-                self.push(begun, stack);
-            }
-            TokenKind::Mark(b'}')
-                if matches!(stack.frames.last(), Some(Frame::Block(_) | Frame::Body(_))) =>
-            {
-                self.report_again();
-                self.next();
-                self.pop(stack);
-            }
-            TokenKind::Word if stack.bodies > 0 && !self.stopped => {
-                self.expected_at(
-                    token,
-                    "expected a node or `}`: this statement stands outside of all blocks",
-                );
-                self.next();
-            }
-            TokenKind::Word | TokenKind::End => {
-                match stack.frames.last() {
-                    Some(Frame::Block(frame)) => self.unclosed(frame.open, token),
-                    Some(Frame::Body(frame)) => self.unclosed(frame.open, token),
-                    Some(Frame::Call(_) | Frame::Local(_)) | None => {
-                        self.expected_at(token, "expected a node");
-                    }
-                }
-                return false;
-            }
-            TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
-                match stack.frames.last_mut() {
-                    Some(Frame::Block(frame)) => frame.incomplete = true,
-                    Some(Frame::Body(_)) => {}
-                    Some(Frame::Call(_) | Frame::Local(_)) => {
-                        self.expected_at(token, "expected a node");
-                        stack.finished.push(self.broken.clone());
-                        self.settle(stack);
-                        return true;
-                    }
-                    None => {
-                        self.expected_at(token, "expected a node");
-                        return false;
-                    }
-                }
-                self.expected_at(token, "expected a node or `}`");
-                self.skip_token();
-            }
-        }
-        true
-    }
-
-    /// Takes what a word has begun.
-    fn push(&mut self, begun: Begun<'a>, stack: &mut NodeStack<'a>) {
-        match begun {
-            Begun::Leaf(tree) => {
-                stack.finished.push(tree);
-                self.settle(stack);
-            }
-            Begun::Many(trees) => {
-                stack.finished.extend(trees.iter().cloned());
-                self.settle(stack);
-            }
-            Begun::Block(frame) => {
-                stack.frames.push(Frame::Block(BlockFrame { first: stack.finished.len() as u32, ..frame }));
-            }
-            Begun::Body(mut frame) => {
-                frame.first = stack.finished.len();
-                stack.bodies += 1;
-                stack.frames.push(Frame::Body(frame));
-            }
-            Begun::Call(frame) => {
-                if self.advance(frame, stack) {
-                    self.settle(stack);
-                }
-            }
-            Begun::Named(mut frame) => {
-                frame.first = stack.finished.len();
-                stack.frames.push(Frame::Local(frame));
-            }
-            Begun::Done => self.settle(stack),
-            Begun::Nothing => {}
-        }
-    }
-
-    /// Ends the block or the body on top, whose brace has just been taken.
-    fn pop(&mut self, stack: &mut NodeStack<'a>) {
-        match stack.frames.pop() {
-            Some(Frame::Block(frame)) => {
-                let children = stack.finished.drain(frame.first as usize..).collect();
-                let tree = self.close(frame, children);
-                stack.finished.push(tree);
-                self.settle(stack);
-            }
-            Some(Frame::Body(frame)) => match self.close_body(frame, &stack.finished) {
-                Some(frame) => stack.frames.push(Frame::Body(frame)),
-                None => {
-                    stack.bodies -= 1;
-                    self.settle(stack);
-                }
-            },
-            Some(Frame::Call(_) | Frame::Local(_)) | None => {}
-        }
-    }
-
-    /// Whether the word that is next begins a statement.
-    fn begins_statement(&self, word: &str) -> bool {
-        is_statement(word) || word != "include" && self.begins_definition(word)
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -268,7 +118,7 @@ impl<'a> Parser<'a> {
     }
 
     /// What begins with the word that is next.
-    fn begin(&mut self) -> Begun<'a> {
+    pub(super) fn begin(&mut self) -> Begun<'a> {
         let start = self.next();
         let word = self.text(start);
         if self.is_muted() {
@@ -373,7 +223,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The node of a block that has been closed.
-    fn close(&mut self, frame: BlockFrame, children: Vec<Tree>) -> Tree {
+    pub(super) fn close(&mut self, frame: BlockFrame, children: Vec<Tree>) -> Tree {
         let written = match frame.head {
             Head::Broken => return self.broken.clone(),
             Head::Combine(combinator) => {

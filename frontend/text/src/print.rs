@@ -124,8 +124,8 @@ fn free_prefix(model: &Model) -> String {
     prefix
 }
 
-/// The subtrees that stand by themselves, children before parents, and the name of each by its identity: those
-/// that have more than one use, that stand in a formula, or that have a comment.
+/// The subtrees that stand by themselves, children before parents, and the name of each by its identity:
+/// those that have more than one use, that stand in a formula, or that have a comment.
 fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
     let mut alone = HashSet::new();

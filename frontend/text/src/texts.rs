@@ -1,5 +1,5 @@
-//! The texts that a scene is read from: its own, and those of the files that it includes. Together they are one
-//! range of bytes, in which each has its own places.
+//! The texts that a scene is read from: its own, and those of the files that it includes. Together they are
+//! one range of bytes, in which each has its own places.
 
 use std::cell::OnceCell;
 use std::sync::Arc;

@@ -13,9 +13,9 @@ use crate::kind::NodeKind;
 use crate::report::{clip, nearest};
 
 impl CheckedTree {
-    /// The same tree, of whose attribute groups there are these alone, in the order of the model. Its programs
-    /// know nothing of the others, so that these cost nothing; not even `color` is there unless it is named.
-    /// Nodes keep their numbers.
+    /// The same tree, of whose attribute groups there are these alone, in the order of the model. Its
+    /// programs know nothing of the others, so that these cost nothing; not even `color` is there unless it
+    /// is named. Nodes keep their numbers.
     ///
     /// ```
     /// use jbt_model::walk::walk;

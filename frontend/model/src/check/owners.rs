@@ -20,11 +20,10 @@ pub const OWNER: &str = "owner";
 
 impl CheckedTree {
     /// The same tree with one more attribute group, [`OWNER`]: the number of the leaf that decides at a
-    /// point, among [`nodes`](Self::nodes) of this tree, and -1 where none does. Where the field is not 0 it is
-    /// what [`owner`](crate::owner::owner) answers for one point; of equals the first in the file decides.
+    /// point, among [`nodes`](Self::nodes) of this tree, and -1 where none does. Where the field is not 0 it
+    /// is what [`owner`](crate::owner::owner) answers for one point; of equals the first in the file decides.
     /// What an operator makes of nothing, as the outside of a complement, may decide as well, and then the
-    /// number is -1. Numbers are whole in f32, as there are at most
-    /// [`MAX_NODES`](jbt_ir::limits::MAX_NODES).
+    /// number is -1. Numbers are whole in f32, as there are at most [`MAX_NODES`](jbt_ir::limits::MAX_NODES).
     ///
     /// Parameters of the tree that is returned cannot be set: set those of this one.
     ///

@@ -19,8 +19,8 @@ pub(super) fn check_name(report: &mut Report, node: &Node) {
     }
 }
 
-/// The way from the root to the first place of a node, as `union.1/arm.0/point`: of each node its name, or the
-/// word of its kind, and the number of the child that leads on.
+/// The way from the root to the first place of a node, as `union.1/arm.0/point`: of each node its name, or
+/// the word of its kind, and the number of the child that leads on.
 pub(super) fn way_to(root: &Tree, node: &Tree) -> String {
     let mut seen = HashSet::new();
     let mut way: Vec<(&Tree, usize)> = vec![(root, 0)];

@@ -18,8 +18,8 @@ use crate::number::{Number, Step};
 use crate::traverse::Visit;
 
 impl Tree {
-    /// The same tree, of which equal subtrees are one: of the same words, numbers of the same bits that follow
-    /// the same parameters in the same way, and the same names. What is shared already stays shared.
+    /// The same tree, of which equal subtrees are one: of the same words, numbers of the same bits that
+    /// follow the same parameters in the same way, and the same names. What is shared already stays shared.
     ///
     /// Cost: linear in the number of nodes.
     ///

@@ -123,8 +123,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The place behind the `}` that closes the block whose `{` is next. Where none does, that is told, and it
-    /// is the end of the text.
+    /// The place behind the `}` that closes the block whose `{` is next. Where none does, that is told, and
+    /// it is the end of the text.
     pub(super) fn block_end(&mut self) -> usize {
         let start = self.peek().start;
         if let Some(&end) = self.program.ends.get(&start) {

@@ -1,5 +1,5 @@
-//! Texts that are programs: definitions, loops, conditions, files, and values with names. They are expanded as
-//! they are read.
+//! Texts that are programs: definitions, loops, conditions, files, and values with names. They are expanded
+//! as they are read.
 //!
 //! ```text
 //! arm(2, hue = 0.1)          the cursor jumps to the body of `arm`, and back behind its `}`

@@ -109,8 +109,8 @@ impl<'a> Parser<'a> {
     }
 
     /// A name that stands for what is no number, with what picks elements of it; the place of all. An element
-    /// that is a number may be the first operand of an expression. Outer nothing after an error; inner nothing
-    /// if no such name is next.
+    /// that is a number may be the first operand of an expression. Outer nothing after an error; inner
+    /// nothing if no such name is next.
     fn bound(&mut self, place: ExpressionPlace) -> Option<Option<(Value, Span)>> {
         let token = self.peek();
         let Some(mut value) = self.list_named(token) else { return Some(None) };
