@@ -153,7 +153,8 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
                     meet(Met::Found(node), &above, &way);
                 }
                 if found && !inside {
-                    (way.pop(), counts.pop());
+                    way.pop();
+                    counts.pop();
                 } else {
                     frames.push(SearchFrame { node, next: 0, is_named: name.is_some() });
                     above.push((node, 0));
@@ -172,7 +173,8 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
                 above.pop();
                 meet(Met::Left(node), &above, &way);
                 if is_named {
-                    (way.pop(), counts.pop());
+                    way.pop();
+                    counts.pop();
                 }
             }
         }

@@ -405,7 +405,9 @@ impl<'a> Parser<'a> {
             let span = Span::new(start, self.previous_end());
             match range.fault().filter(|_| !(low.is_nan() || high.is_nan())) {
                 Some(fault) => {
-                    self.report(|| Diagnostic::error(Some(span), "this range makes no sense").expected(fault))
+                    self.report(|| {
+                        Diagnostic::error(Some(span), "this range makes no sense").expected(fault)
+                    });
                 }
                 None => parameter = parameter.within(range),
             }

@@ -46,16 +46,18 @@ fn same(program: &str, plain: &str) {
 
 #[test]
 fn definitions_have_arguments_of_every_kind() {
-    let program = "jbt 1
-        def bead(at, r = 0.5, hue = \"#ff0000\", inner = point { radius 2 }, path = [(0 0 0) (1 0 0)]) {
+    let program = "jbt 1 let ball = point { radius 2 }
+        def bead(at, r = 0.5, hue = \"#ff0000\", inner = use ball, path = [(0 0 0) (1 0 0)]) {
             let far = 2 * r
-            color hue { translate at { sum { point { radius far } use inner polyline { points path radius 1 } } } }
+            color hue {
+                translate at { sum { point { radius far } use inner polyline { points path radius 1 } } }
+            }
         }
         sum {
             bead((0 0 0))
-            bead((1 0 0), 0.25, (0 1 0))
+            bead((1 0 0), 0.25, (0 1 0), ball)
             bead((2 0 0), hue = srgb(1 0 0), inner = sum { point { radius 3 } point { radius 4 } })
-            bead(path = [(0 0 0) (0 2 0)], at = (3 0 0))
+            bead(path = [(0 0 0) (0 2 0)], at = (3 0 0), inner = use ball)
         }";
     let bead = |at: &str, far: f64, hue: &str, inner: &str, end: &str| {
         format!(
@@ -70,15 +72,7 @@ fn definitions_have_arguments_of_every_kind() {
         bead("2 0 0", 1.0, "(1 0 0)", "sum { point { radius 3 } point { radius 4 } }", "(1 0 0)"),
         bead("3 0 0", 1.0, "(1 0 0)", two, "(0 2 0)"),
     ];
-    // A node as a default stands in parentheses of its own.
-    let program = program.replace("inner = point { radius 2 },", "inner,");
-    let program =
-        program.replace("use inner", "use inner").replace("bead((0 0 0))", "bead((0 0 0), inner = ball)");
-    let program = program
-        .replace("(0 1 0))", "(0 1 0), ball)")
-        .replace("at = (3 0 0)", "at = (3 0 0), inner = use ball");
-    let program = program.replace("jbt 1", "jbt 1 let ball = point { radius 2 }");
-    same(&program, &format!("jbt 1 sum {{ {} }}", plain.join(" ")));
+    same(program, &format!("jbt 1 sum {{ {} }}", plain.join(" ")));
 }
 
 #[test]

@@ -24,17 +24,17 @@ const ELSE: &str = "else";
 
 /// The values of a loop's variable.
 pub(crate) enum Turns {
-    /// So many numbers.
-    Numbers { first: f64, step: f64, count: usize },
+    /// So many numbers: any whole one that is not negative, also infinity.
+    Numbers { first: f64, step: f64, count: f64 },
     /// The elements of a list.
     Elements(Vec<Value>),
 }
 
 impl Turns {
-    fn count(&self) -> usize {
+    fn count(&self) -> f64 {
         match self {
             Self::Numbers { count, .. } => *count,
-            Self::Elements(elements) => elements.len(),
+            Self::Elements(elements) => elements.len() as f64,
         }
     }
 }
@@ -83,8 +83,8 @@ impl<'a> Parser<'a> {
             self.jump_behind(end);
             return Begun::Leaf(self.broken.clone());
         };
-        let (count, length) = (turns.0, end - open.end);
-        let what = || format!("{} turns of this loop", turns.0);
+        let (count, length) = (turns.count(), end - open.end);
+        let what = || format!("{count} turns of this loop");
         if count == 0.0 {
             self.program.has_expanded = true;
             self.jump_behind(end);
@@ -98,7 +98,6 @@ impl<'a> Parser<'a> {
             return Begun::Nothing;
         }
         self.lexer.jump(body);
-        let turns = turns.1(count);
         let made = Loop { variable, turns, begun: 0, body, span };
         self.open_body(open, span, BodyKind::Loop(Box::new(made)))
     }
@@ -146,8 +145,8 @@ impl<'a> Parser<'a> {
         all
     }
 
-    /// The number of a loop's turns, which may be any number that is not negative, and what makes them.
-    fn turns(&mut self, start: Token) -> Option<(f64, Box<dyn FnOnce(f64) -> Turns>)> {
+    /// The turns of a loop, from behind its `in`; nothing after an error.
+    fn turns(&mut self, start: Token) -> Option<Turns> {
         let first = self.value()?;
         if self.accept(RANGE).is_none() {
             let Some(elements) = first.elements() else {
@@ -159,7 +158,7 @@ impl<'a> Parser<'a> {
                 });
                 return None;
             };
-            return Some((elements.len() as f64, Box::new(|_| Turns::Elements(elements))));
+            return Some(Turns::Elements(elements));
         }
         let high = self.expression(ExpressionPlace::Alone);
         let step = if self.accept_word("step") {
@@ -192,8 +191,7 @@ impl<'a> Parser<'a> {
         } else {
             count.ceil()
         };
-        let made = move |count: f64| Turns::Numbers { first: low, step: width, count: count as usize };
-        Some((near.max(0.0), Box::new(made)))
+        Some(Turns::Numbers { first: low, step: width, count: near.max(0.0) })
     }
 
     /// The next turn of a loop, if there is one: its variable has its value, and the cursor is at its body.
@@ -201,7 +199,7 @@ impl<'a> Parser<'a> {
         let wrong = self.report.count() > frame.errors;
         let BodyKind::Loop(made) = &mut frame.kind else { return false };
         // What is wrong once is wrong each time.
-        if made.begun == made.turns.count() || wrong || self.stopped {
+        if made.begun as f64 >= made.turns.count() || wrong || self.stopped {
             return false;
         }
         let place = made.begun;
