@@ -7,6 +7,7 @@ pub mod check;
 #[cfg(feature = "peers")]
 pub mod compare;
 pub mod limit;
+pub mod memory;
 pub mod model;
 pub mod naive;
 #[cfg(feature = "peers")]

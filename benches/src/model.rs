@@ -2,7 +2,7 @@
 
 use jbt::internals::model::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt::tree::{NodeKind, Primitive};
-use jbt::{CheckedTree, Falloff, Model, Points, Tree, text};
+use jbt::{CheckedTree, Falloff, Model, Points, Tree, build, text};
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every
 /// contestant is given the same.
@@ -84,6 +84,16 @@ pub fn leaf(blob: &Blob) -> Tree {
 pub fn tree(blobs: &[Blob]) -> CheckedTree {
     let tree = Tree::sum(blobs.iter().map(leaf));
     Model::new(tree).check().expect("blobs are a good model")
+}
+
+/// The same sum as one node of particles: what somebody says who has arrays.
+#[must_use]
+pub fn cloud(blobs: &[Blob]) -> CheckedTree {
+    let positions: Vec<[f32; 3]> = blobs.iter().map(|blob| blob.center).collect();
+    let radii: Vec<f32> = blobs.iter().map(|blob| blob.radius).collect();
+    let colors: Vec<[f32; 3]> = blobs.iter().map(|blob| blob.color).collect();
+    let cloud = build::particles(positions, radii).colors(colors);
+    Model::new(cloud).check().expect("blobs are a good model")
 }
 
 /// Points uniform in [-1, 1]^3.

@@ -15,10 +15,11 @@ pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
-pub use scene::{PartArguments, SceneArguments};
+pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
-    CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
+    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
+    StatsArguments,
 };
 pub use wanted::Wanted;
 use wanted::WantedParser;
@@ -28,7 +29,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use jbt::export::{ColorEncoding, Format, Up};
+use jbt::export::{ColorEncoding, Format, LengthUnit, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
@@ -36,7 +37,7 @@ use words::words;
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
-#[command(name = "jbt", version, max_term_width = 100, after_help = EXIT_CODES)]
+#[command(name = "jbt", version, max_term_width = 100, after_help = after_help())]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -51,9 +52,15 @@ pub struct Arguments {
     pub trace: Option<PathBuf>,
 }
 
+fn after_help() -> String {
+    format!(
+        "A SCENE is {}; `-` reads it from the standard input, where its content tells which. {EXIT_CODES}",
+        jbt::SceneFormat::list()
+    )
+}
+
 const EXIT_CODES: &str = "\
-A SCENE is a .jbt text, a ParsIP scene (.blob, .scene) or a program of instructions (.vm); `-` reads it from the standard
-input, where its first line tells which. Without -o a result is called like the scene, in the current folder.
+Without -o a result is called like the scene, in the current folder.
 
 Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written,
 130 and 143 stopped by SIGINT or SIGTERM.
@@ -65,6 +72,7 @@ Examples:
   jbt contour circles.jbt --quadtree -o circles.svg
   jbt sample hero.jbt --resolution 64 -o field.npy
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt convert drop.pov -o drop.jbt
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
   jbt stats hero.jbt
@@ -83,6 +91,8 @@ pub enum Command {
     Sample(SampleArguments),
     /// Evaluate a scene at the points of a CSV file
     Eval(EvalArguments),
+    /// Write a scene of any format as a .jbt text
+    Convert(ConvertArguments),
     /// Print a scene as one of the stages that it goes through on its way to machine code
     Show(ShowArguments),
     /// Count the evaluations of primitives that a point and a lattice take, and how many matter
@@ -105,7 +115,8 @@ differ from zero. docs/files.md says what each format holds, and how other progr
 
 Keys of --json that measure the mesh, in units and axes of the scene:
   bounds: [x0, y0, z0, x1, y1, z1] and size: [x, y, z] (null if it is empty), volume (null if it is not closed: it encloses
-  nothing then), area; of the file: format, up, colors (null if it has none)
+  nothing then), area; of the file: format, up, colors (null if it has none), unit (null if it
+  states none)
 
 Parts that are thinner than a cell are searched for, since no cell can show them. Keys of thin in --json (null
 with --no-thin):
@@ -130,6 +141,8 @@ pub struct MeshArguments {
     pub up: Option<Up>,
     #[arg(long, value_name = "ENCODING", value_parser = words(ColorEncoding::ALL, colors_in_words), help = colors_help())]
     pub colors: Option<ColorEncoding>,
+    #[arg(long, value_name = "UNIT", value_parser = words(LengthUnit::ALL, unit_in_words), help = unit_help())]
+    pub unit: Option<LengthUnit>,
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -157,6 +170,26 @@ fn colors_in_words(encoding: ColorEncoding) -> (&'static str, &'static str) {
         ColorEncoding::Linear => "As in the scene: 0.5 is 128 of 255",
     };
     (encoding.name(), help)
+}
+
+fn unit_in_words(unit: LengthUnit) -> (&'static str, &'static str) {
+    let help = match unit {
+        LengthUnit::Micrometre => "Micrometres",
+        LengthUnit::Millimetre => "Millimetres",
+        LengthUnit::Centimetre => "Centimetres",
+        LengthUnit::Inch => "Inches",
+        LengthUnit::Foot => "Feet",
+        LengthUnit::Metre => "Metres",
+    };
+    (unit.name(), help)
+}
+
+fn unit_help() -> String {
+    let usual = |format: Format| format.conventions().unit.map(LengthUnit::name);
+    format!(
+        "What a unit of the scene is, in files that say so; lengths stay as they are [default: {}]",
+        by_format(usual)
+    )
 }
 
 fn up_help() -> String {

@@ -25,8 +25,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     }
     let mut told = Findings::default();
     for path in &arguments.scenes {
-        let (definitions, parts) = (arguments.definitions.clone(), arguments.parts.clone());
-        let scene = SceneArguments { path: path.clone(), definitions, parts };
+        let scene = SceneArguments { path: path.clone(), options: arguments.options.clone() };
         let checked = check(&scene, quiet || arguments.json);
         if arguments.json {
             told.add(path, &checked);
@@ -88,16 +87,17 @@ impl Findings {
 
 impl Checked {
     fn leaves(&self) -> usize {
-        let primitive = |kind: &NodeKind| match kind {
-            NodeKind::Primitive(_) => true,
+        let primitives = |kind: &NodeKind| match kind {
+            NodeKind::Primitive(_) => 1,
+            NodeKind::Particles(particles) => particles.len(),
             NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => false,
+            | NodeKind::Attribute { .. } => 0,
         };
-        self.tree.nodes().iter().filter(|node| primitive(&node.kind)).count()
+        self.tree.nodes().iter().map(|node| primitives(&node.kind)).sum()
     }
 
     /// For machines.

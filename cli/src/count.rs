@@ -156,7 +156,7 @@ struct CountedLeaf {
     node: u32,
     kind: &'static str,
     place: Option<(usize, usize)>,
-    /// How often it stands in the tree once every shared subtree is unfolded.
+    /// How often it stands in the tree once every shared subtree is unfolded; of particles, all of them.
     uses: u64,
 }
 
@@ -169,6 +169,12 @@ fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
             kind: primitive.skeleton.kind().name(),
             place: node.span.and_then(|span| lines.position(span.start as usize)),
             uses: uses[index],
+        }),
+        NodeKind::Particles(particles) => Some(CountedLeaf {
+            node: index as u32,
+            kind: "particles",
+            place: node.span.and_then(|span| lines.position(span.start as usize)),
+            uses: uses[index].saturating_mul(particles.len() as u64),
         }),
         NodeKind::Combine(_)
         | NodeKind::Expression(_)

@@ -5,8 +5,9 @@
 //! mesh      .glb .ply .obj .stl        the first one is written where nothing says which
 //! render    .png
 //! contour   .svg .png
-//! sample    .npy
+//! sample    .npy .vdb
 //! eval      .csv
+//! convert   .jbt
 //! ```
 
 use std::fmt::Debug;
@@ -83,11 +84,16 @@ impl FileKind for SliceKind {
 pub enum ArrayKind {
     /// An array of numpy.
     Npy,
+    /// A sparse volume of OpenVDB.
+    Vdb,
 }
 
 impl FileKind for ArrayKind {
     const RESULT: &'static str = "an array";
-    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Npy, "npy", "An array for numpy")];
+    const ROWS: &'static [FormatRow<Self>] = &[
+        row(Self::Npy, "npy", "An array for numpy"),
+        row(Self::Vdb, "vdb", "A sparse volume of OpenVDB: points where the field is not 0"),
+    ];
 }
 
 /// What `jbt eval` writes.
@@ -100,6 +106,18 @@ pub enum TableKind {
 impl FileKind for TableKind {
     const RESULT: &'static str = "a table";
     const ROWS: &'static [FormatRow<Self>] = &[row(Self::Csv, "csv", "A table with a header")];
+}
+
+/// What `jbt convert` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TextKind {
+    /// The text format of this project.
+    Jbt,
+}
+
+impl FileKind for TextKind {
+    const RESULT: &'static str = "a text";
+    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Jbt, "jbt", "A model as text")];
 }
 
 /// The row that counts where nothing says which.

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
-//! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
+//! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`convert`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
 //! | [`signals`], [`threads`] | what stops the work, and what does it |
@@ -14,6 +14,7 @@
 mod arguments;
 mod check;
 mod contour;
+mod convert;
 mod count;
 mod eval;
 mod failure;
@@ -80,6 +81,7 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
         Command::Contour(arguments) => contour::run(arguments, quiet, start),
         Command::Sample(arguments) => sample::run(arguments, quiet, start),
         Command::Eval(arguments) => eval::run(arguments, quiet),
+        Command::Convert(arguments) => convert::run(arguments, quiet),
         Command::Show(arguments) => show::run(arguments, quiet),
         Command::Count(arguments) => count::run(arguments, quiet),
         Command::Stats(arguments) => stats::run(arguments, quiet, start),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
-use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
+use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
 use jbt::mesh::ThinReport;
 use jbt::{Box3, MeshCounters, ModelOrigin, Polygonize, Polygonized};
 use serde_json::json;
@@ -29,7 +29,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    options.name = scene.part_name(&arguments.scene.parts).map(str::to_owned);
+    options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
@@ -70,7 +70,10 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
     if arguments.colors.is_some() && format.conventions().colors.is_none() {
         return Err(Failure::Usage(format!("a .{format} file has no colours that --colors could be about")));
     }
-    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, name: None })
+    if arguments.unit.is_some() && format.conventions().unit.is_none() {
+        return Err(Failure::Usage(format!("a .{format} file states no unit that --unit could be about")));
+    }
+    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, unit: arguments.unit, name: None })
 }
 
 /// What may not be as people expect.
@@ -167,6 +170,7 @@ impl MeshSummary<'_> {
             "format": self.format.extension(),
             "up": self.options.up_in(self.format).name(),
             "colors": self.options.colors_in(self.format).map(ColorEncoding::name),
+            "unit": self.options.unit_in(self.format).map(LengthUnit::name),
             "cut_sides": report.cut_sides.to_string(),
             "field_evaluations": report.field_evaluations + report.jump_evaluations,
             "jump_evaluations": report.jump_evaluations,

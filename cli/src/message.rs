@@ -11,7 +11,10 @@ pub struct Message {
     /// For people: place, message, the line, a caret.
     pub rendered: String,
     file: String,
-    /// Lines and columns from 1: those of the first character, and those behind the last.
+    /// The first byte, from 0.
+    byte: Option<u32>,
+    /// Lines and columns from 1: those of the first character, and those behind the last. A file that is no
+    /// text has none.
     place: Option<[(usize, usize); 2]>,
     message: String,
     hint: Option<String>,
@@ -34,7 +37,10 @@ impl Message {
             severity: *severity,
             rendered: source.render(diagnostic),
             file: source.name.to_owned(),
-            place: place.map(|place| place.map(|byte| source.position(byte as usize))),
+            byte: span.map(|span| span.start),
+            place: place
+                .filter(|_| !source.is_binary())
+                .map(|place| place.map(|byte| source.position(byte as usize))),
             message: message.clone(),
             hint: help.clone(),
             notes: notes.iter().map(|note| note.message.clone()).collect(),
@@ -43,8 +49,16 @@ impl Message {
 
     /// A message whose text says its place.
     pub fn rendered(severity: Severity, file: &str, rendered: String) -> Self {
-        let (file, message) = (file.to_owned(), rendered.clone());
-        Self { severity, file, place: None, message, hint: None, notes: Vec::new(), rendered }
+        Self {
+            severity,
+            file: file.to_owned(),
+            byte: None,
+            place: None,
+            message: rendered.clone(),
+            hint: None,
+            notes: Vec::new(),
+            rendered,
+        }
     }
 
     /// For machines.
@@ -54,6 +68,7 @@ impl Message {
         json!({
             "file": self.file,
             "severity": self.severity.name(),
+            "byte": self.byte,
             "line": line,
             "column": column,
             "end": end,

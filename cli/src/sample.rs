@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use jbt::mesh::Lattice;
-use jbt::sample::{Sampler, write_npy};
+use jbt::sample::{Sampler, VdbVolume, Wanted, write_npy, write_vdb};
 use jbt::{Box3, Counters};
 use serde_json::json;
 
@@ -28,16 +28,28 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let sampler =
         Sampler::new(&compiler, &tree, arguments.query.query).map_err(|error| scene.failure(&error))?;
     let mut progress = ProgressLine::new("sampling", quiet);
-    let mut work = || progress.run(sampler.dense(&lattice));
-    let planes = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
-    drop(progress);
-
-    let mut output = Output::open(&destination)?;
     match destination.kind {
-        ArrayKind::Npy => write_npy(lattice.points(), &planes, &mut output),
+        ArrayKind::Npy => {
+            let mut work = || progress.run(sampler.dense(&lattice));
+            let planes = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+            drop(progress);
+            let mut output = Output::open(&destination)?;
+            write_npy(lattice.points(), &planes, &mut output).map_err(|error| output.failure(error))?;
+            output.finish()?;
+        }
+        ArrayKind::Vdb => {
+            lattice.check_points().map_err(|error| scene.failure(&error))?;
+            let mut work = || progress.run(sampler.blocks(&lattice, Wanted::Support));
+            let blocks = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+            drop(progress);
+            let evaluator = sampler.evaluator();
+            let (origin, names) = (evaluator.origin().point(), evaluator.layout().names());
+            let volume = VdbVolume { lattice: &lattice, origin, names };
+            let mut output = Output::open(&destination)?;
+            write_vdb(volume, &blocks, &mut output).map_err(|error| output.failure(error))?;
+            output.finish()?;
+        }
     }
-    .map_err(|error| output.failure(error))?;
-    output.finish()?;
     let report = SampleReport {
         sampler: &sampler,
         lattice: &lattice,

@@ -4,7 +4,6 @@ use std::io;
 use std::sync::Arc;
 
 use jbt::diagnostic::{Diagnostic, Severity, SourceText};
-use jbt::text::Options;
 use jbt::text::files::Files;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
@@ -34,7 +33,7 @@ impl LoadedScene {
         } else {
             Files::new(Arc::new(SceneFolder::of(path)))
         };
-        let options = Options { parameters: arguments.definitions.clone(), files };
+        let options = arguments.options.to_library(files);
         let loaded = if is_standard(path) {
             jbt::Scene::from_reader("<stdin>", io::stdin().lock(), &options)
         } else {
@@ -42,7 +41,10 @@ impl LoadedScene {
         };
         let jbt::Scene { mut model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
-        let PartArguments { only, without } = &arguments.parts;
+        if arguments.options.mirror {
+            model.orientation.handed = model.orientation.handed.other();
+        }
+        let PartArguments { only, without } = &arguments.options.parts;
         for part in without {
             model = model.without(part).map_err(|error| Failure::scene(&path.display(), &error))?;
         }

@@ -23,6 +23,13 @@ pub const MAX_NAMED_FILES: usize = 1024;
 /// Bytes of all files that one scene names: particles and grids are some hundred megabytes, and stay in
 /// memory. What is read as text has [`MAX_SCENE_BYTES`], all files of a scene together.
 pub const MAX_NAMED_BYTES: usize = 1 << 30;
+/// Numbers and strings of one request of a RIB file: 8 bytes each, kept until the request has been read.
+pub const MAX_LIST_NUMBERS: usize = 1 << 22;
+/// Steps of a scene that is a program, as those of POV-Ray are: directives that run, components, calls of
+/// functions. A step takes some tenths of a microsecond.
+pub const MAX_SCRIPT_STEPS: usize = 1 << 20;
+/// Blocks within each other in a file that has them, each of which keeps a state of some hundred bytes.
+pub const MAX_BLOCK_DEPTH: usize = 1 << 16;
 /// Errors that are kept for one file; the rest are counted.
 pub const MAX_ERRORS: usize = 50;
 /// Operators and parentheses of one number expression that wait for their operands.
@@ -33,12 +40,17 @@ pub const MAX_EXPRESSION_STEPS: usize = 100_000;
 pub const MAX_NODES: usize = 4_000_000;
 /// Uses of nodes, counted along every path from the root: what is left when no subtree is shared.
 pub const MAX_INSTANCES: usize = 4_000_000;
+/// Particles of one model, which are rows and no nodes: each time that they are used. A row keeps some 200
+/// bytes while its model is meshed.
+pub const MAX_PARTICLES: usize = 1 << 27;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
 pub const MAX_ATTRIBUTES: usize = 32;
 /// Points of one skeleton, and numbers of one list.
 pub const MAX_SKELETON_POINTS: usize = 1 << 16;
+/// Planes of one convex solid that is given by them: its corners are found by cutting all faces by each.
+pub const MAX_PLANES: usize = 1 << 10;
 /// How often a cubic curve may be halved into pieces: 4096 of them deviate from their chords by 2^-24 of what
 /// it does.
 pub const MAX_CURVE_HALVINGS: u32 = 12;

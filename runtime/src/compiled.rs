@@ -225,7 +225,7 @@ impl Compiled {
     pub(crate) fn prepare(&self, needs: &[Need]) -> Result<(), CompileError> {
         let missing: Vec<Need> = needs.iter().copied().filter(|need| !self.is_made(*need)).collect();
         if !missing.is_empty() {
-            let lowering = Lowering::new(self.tree());
+            let lowering = Lowering::with(self.tree(), &PoolWorkers);
             // What went wrong is kept, and told below.
             missing.par_iter().for_each(|need| drop(self.make(*need, Some(&lowering))));
         }
@@ -369,7 +369,7 @@ impl Compiled {
         span!("lower");
         let answer = match lowering {
             Some(lowering) => ask(lowering),
-            None => ask(&Lowering::new(self.tree())),
+            None => ask(&Lowering::with(self.tree(), &PoolWorkers)),
         };
         answer.map_err(|list| self.tree().diagnostics(list).into())
     }

@@ -172,6 +172,7 @@ pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_model::falloff::Falloff;
 pub use jbt_model::model::Model;
 pub use jbt_model::number::Number;
+pub use jbt_model::orientation::{Handed, ModelUp, Orientation};
 pub use jbt_model::origin::ModelOrigin;
 pub use jbt_model::parameter::Parameter;
 pub use jbt_model::query::{AnswerKind, Planes, Query};
@@ -189,6 +190,7 @@ pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
 #[cfg(feature = "export")]
 pub use folder::SceneFolder;
+pub use jbt_text::import::SceneFormat;
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
 pub use live::{LiveContour, LiveMesh};
@@ -198,7 +200,7 @@ pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygo
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use render::{Render, Renderer};
-pub use scene::{Scene, SceneFormat};
+pub use scene::Scene;
 pub use solid::{Membership, Solid};
 pub use trace::{Ray, Tracer};
 pub use tree::{Node, NodeKind};

@@ -3,17 +3,28 @@
 //! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
 //! meaning: they are the case of one thread.
 
+use jbt_lower::Workers;
+
 #[cfg(feature = "parallel")]
 pub(crate) use rayon::{current_num_threads as thread_count, join, prelude::*};
 
 #[cfg(not(feature = "parallel"))]
 pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, join, thread_count};
 
+/// What other crates have done on the threads of this one.
+pub(crate) struct PoolWorkers;
+
+impl Workers for PoolWorkers {
+    fn each(&self, count: usize, task: &(dyn Fn(usize) + Sync)) {
+        (0..count).into_par_iter().for_each(task);
+    }
+}
+
 #[cfg(not(feature = "parallel"))]
 mod serial {
     //! What this crate uses of rayon's interface, on iterators of the standard library.
 
-    use std::slice::{Chunks, Iter};
+    use std::slice::{Chunks, ChunksMut, Iter};
 
     /// One: the caller.
     pub(crate) fn thread_count() -> usize {
@@ -36,6 +47,7 @@ mod serial {
     pub(crate) trait ParallelSlice<T> {
         fn par_iter(&self) -> Iter<'_, T>;
         fn par_chunks(&self, size: usize) -> Chunks<'_, T>;
+        fn par_chunks_mut(&mut self, size: usize) -> ChunksMut<'_, T>;
         fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K);
     }
 
@@ -46,6 +58,10 @@ mod serial {
 
         fn par_chunks(&self, size: usize) -> Chunks<'_, T> {
             self.chunks(size)
+        }
+
+        fn par_chunks_mut(&mut self, size: usize) -> ChunksMut<'_, T> {
+            self.chunks_mut(size)
         }
 
         fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K) {

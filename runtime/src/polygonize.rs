@@ -291,6 +291,7 @@ impl Polygonize {
         counters.thin_intervals =
             kernels.pruned().interval_evaluations - counters.division.interval_evaluations;
         mesh.origin = tree.origin().point();
+        mesh.orientation = tree.orientation();
         for near in report.thin.iter_mut().flat_map(|thin| &mut thin.near) {
             *near = tree.origin().world(*near);
         }

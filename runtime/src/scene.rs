@@ -5,12 +5,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::check::CheckedTree;
-use jbt_model::diagnostic::{Diagnostic, Diagnostics, SourceText};
+use jbt_model::diagnostic::{Diagnostics, SourceText};
 use jbt_model::model::Model;
-use jbt_text::import::{Imported, parsip, vm};
-use jbt_text::{self, Options};
+use jbt_text::Options;
+use jbt_text::import::{Imported, SceneFormat};
+
+/// The beginning of a file, in bytes, that tells its format.
+const BEGINNING: u64 = 64 << 10;
 
 /// A scene that was read: its model, and what is odd about its text.
 ///
@@ -38,86 +40,12 @@ pub struct Scene {
     options: Options,
 }
 
-/// How a scene is written.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[non_exhaustive]
-pub enum SceneFormat {
-    /// The [text format](crate::text) of jbt.
-    Jbt,
-    /// A ParsIP scene: see [`parsip`](fn@crate::import::parsip).
-    Parsip,
-    /// A program of instructions: see [`vm`](fn@crate::import::vm).
-    Vm,
-}
-
-impl SceneFormat {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::Jbt, Self::Parsip, Self::Vm];
-
-    /// The endings of its files' names, without the dot.
-    #[must_use]
-    pub const fn extensions(self) -> &'static [&'static str] {
-        match self {
-            Self::Jbt => &["jbt"],
-            Self::Parsip => &["blob", "scene"],
-            Self::Vm => &["vm"],
-        }
-    }
-
-    /// In words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Jbt => "a model",
-            Self::Parsip => "a ParsIP scene",
-            Self::Vm => "a program of instructions",
-        }
-    }
-
-    /// The format by the ending of a file's name, in any case; `None` if the name has no ending.
-    ///
-    /// # Errors
-    /// An ending that is not known: the message lists those that are.
-    pub fn of_name(name: &str) -> Result<Option<Self>, Diagnostics> {
-        let Some(extension) = Path::new(name).extension().and_then(|extension| extension.to_str()) else {
-            return Ok(None);
-        };
-        let is_mine =
-            |format: &Self| format.extensions().iter().any(|own| own.eq_ignore_ascii_case(extension));
-        if let Some(format) = Self::ALL.into_iter().find(is_mine) {
-            return Ok(Some(format));
-        }
-        let known = Self::ALL.iter().flat_map(|format| format.extensions());
-        let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
-        let message = format!("{name} is no scene by its ending `.{extension}`");
-        let error = Diagnostic::error(None, message).expected(format!("scenes end in {}", known.join(", ")));
-        Err(vec![error].into())
-    }
-
-    /// The format by the first line that means something. ParsIP scenes are sections, the first of which
-    /// begins with a bracket, and instructions have
-    /// names that begin with an underscore as a rule; no `.jbt` text begins with either. All have comments.
-    #[must_use]
-    pub fn of_content(text: &[u8]) -> Self {
-        let blank = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
-        let mut lines = text.split(|&byte| byte == b'\n').map(|line| {
-            let start = line.iter().position(|byte| !blank(byte)).unwrap_or(line.len());
-            &line[start..]
-        });
-        match lines.find(|line| !line.is_empty() && !line.starts_with(b"#")) {
-            Some(line) if line.starts_with(b"[") => Self::Parsip,
-            Some(line) if line.starts_with(b"_") => Self::Vm,
-            Some(_) | None => Self::Jbt,
-        }
-    }
-}
-
 impl Scene {
     /// Reads a file: `.jbt`, `.blob`, `.scene` or `.vm`, or one whose name has no ending, by its first line.
     ///
     /// # Errors
     /// A file that cannot be read ([`Diagnostics::io`] says why), an ending that is not known, a file of more
-    /// than [`MAX_SCENE_BYTES`], and
+    /// than [`SceneFormat::max_bytes`], and
     /// everything that is wrong with its text. What is wrong with the model, [`check`](Self::check) says.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         Self::load_with(path, &Options::default())
@@ -129,30 +57,29 @@ impl Scene {
     /// Those of [`load`](Self::load), and a parameter that the scene does not have.
     pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Self, Diagnostics> {
         let name = path.as_ref().display().to_string();
-        SceneFormat::of_name(&name)?;
-        let failed = |cause| Diagnostics::unreadable(&name, cause);
-        let file = File::open(path.as_ref()).map_err(failed)?;
-        // The length of a pipe or device is not known; reading stops at the limit for these.
-        if file.metadata().map_err(failed)?.len() > MAX_SCENE_BYTES as u64 {
-            return Err(too_large(&name));
-        }
+        SceneFormat::check_name(&name)?;
+        let file = File::open(path.as_ref()).map_err(|cause| Diagnostics::unreadable(&name, cause))?;
         Self::from_reader(&name, file, options)
     }
 
-    /// Reads at most the limit and one byte more; the format is that of the name.
+    /// Reads at most the limit of the format and one byte more; the format is that of the name and of the
+    /// beginning of what is read, as with [`SceneFormat::of`].
     ///
     /// # Errors
     /// Those of [`load_with`](Self::load_with).
     pub fn from_reader(name: &str, reader: impl Read, options: &Options) -> Result<Self, Diagnostics> {
+        let failed = |cause| Diagnostics::unreadable(name, cause);
         let mut bytes = Vec::new();
-        let mut reader = reader.take(MAX_SCENE_BYTES as u64 + 1);
-        reader.read_to_end(&mut bytes).map_err(|cause| Diagnostics::unreadable(name, cause))?;
-        Self::read(name, &bytes, options)
+        let mut reader = reader.take(BEGINNING);
+        reader.read_to_end(&mut bytes).map_err(failed)?;
+        let format = SceneFormat::of(name, &bytes)?;
+        reader.set_limit(format.max_bytes() as u64 + 1 - bytes.len() as u64);
+        reader.read_to_end(&mut bytes).map_err(failed)?;
+        Self::read(name, &bytes, format, options)
     }
 
     /// A scene that somebody else has read, with a name for messages. The format is that of the name, as if
-    /// it were a file's; a name without an ending
-    /// leaves it to the first line.
+    /// it were a file's, and of the content, as with [`SceneFormat::of`].
     ///
     /// ```
     /// let error = jbt::Scene::from_bytes("ball.jbt", b"jbt 1\npoint { radius 1 } }").unwrap_err();
@@ -162,26 +89,12 @@ impl Scene {
     /// # Errors
     /// Those of [`load`](Self::load).
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, Diagnostics> {
-        Self::read(name, bytes, &Options::default())
+        Self::read(name, bytes, SceneFormat::of(name, bytes)?, &Options::default())
     }
 
-    fn read(name: &str, bytes: &[u8], options: &Options) -> Result<Self, Diagnostics> {
+    fn read(name: &str, bytes: &[u8], format: SceneFormat, options: &Options) -> Result<Self, Diagnostics> {
         span!("read");
-        let format = SceneFormat::of_name(name)?.unwrap_or_else(|| SceneFormat::of_content(bytes));
-        if bytes.len() > MAX_SCENE_BYTES {
-            return Err(too_large(name));
-        }
-        let imported = match format {
-            SceneFormat::Jbt => jbt_text::parse(bytes, options)
-                .map(|model| Imported { model, warnings: Diagnostics::default() }),
-            SceneFormat::Parsip | SceneFormat::Vm => {
-                if let Some((parameter, _)) = options.parameters.first() {
-                    return Err(fixed(name, format, parameter));
-                }
-                if format == SceneFormat::Vm { vm(bytes) } else { parsip(bytes) }
-            }
-        };
-        let Imported { mut model, warnings } = imported.map_err(|error| error.named(name))?;
+        let Imported { mut model, warnings } = format.read(name, bytes, options)?;
         let text = match model.source.take() {
             Some(source) => source.named(name),
             None => SourceText::new(name, bytes),
@@ -209,8 +122,7 @@ impl Scene {
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
         let mut options = self.options.clone();
         options.parameters.extend(settings.iter().map(|&(name, value)| (name.to_owned(), value)));
-        // A name without an ending has been read as what its text is.
-        Self::read(self.text.name(), self.text.text(), &options)
+        Self::read(self.text.name(), self.text.text(), self.format, &options)
     }
 
     /// The checked model.
@@ -223,16 +135,6 @@ impl Scene {
     }
 }
 
-fn too_large(name: &str) -> Diagnostics {
-    let message = format!("{name} is larger than {} MiB, the limit for scenes", MAX_SCENE_BYTES >> 20);
-    vec![Diagnostic::limit(None, message)].into()
-}
-
-fn fixed(name: &str, format: SceneFormat, parameter: &str) -> Diagnostics {
-    let message = format!("{name} is {}: it has no parameter `{parameter}` to define", format.text());
-    vec![Diagnostic::error(None, message)].into()
-}
-
 #[cfg(test)]
 mod tests {
     use std::io;
@@ -241,27 +143,12 @@ mod tests {
 
     use super::*;
 
-    fn format(name: &str, text: &[u8]) -> SceneFormat {
-        SceneFormat::of_name(name).unwrap().unwrap_or_else(|| SceneFormat::of_content(text))
-    }
-
-    #[test]
-    fn formats_by_extension_and_by_content() {
-        assert_eq!(format("a.JBT", b"[Global]"), SceneFormat::Jbt);
-        assert_eq!(format("a.scene", b"jbt 1"), SceneFormat::Parsip);
-        assert_eq!(format("-", b"\n\0\r\n# x\r\n [BLOBNODE 0]\0"), SceneFormat::Parsip);
-        assert_eq!(format("-", b"# x\njbt 1 point { radius 1 }"), SceneFormat::Jbt);
-        assert_eq!(format("a.vm", b"# x"), SceneFormat::Vm);
-        assert_eq!(format("-", b"# x\n_0 var-x"), SceneFormat::Vm);
-        assert_eq!(format("a", b""), SceneFormat::Jbt);
-    }
-
     #[test]
     fn reads_up_to_the_limit_and_no_further() {
         let blanks = |count: u64| {
             Scene::from_reader("a.jbt", io::repeat(b' ').take(count), &Options::default()).unwrap_err()
         };
-        assert_eq!(blanks(MAX_SCENE_BYTES as u64)[0].severity, Severity::Error);
+        assert_eq!(blanks(SceneFormat::Jbt.max_bytes() as u64)[0].severity, Severity::Error);
         assert_eq!(blanks(u64::MAX)[0].severity, Severity::Limit);
     }
 }

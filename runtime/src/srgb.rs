@@ -25,6 +25,49 @@ pub fn decode(encoded: f32) -> f32 {
     if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }
 
+/// Cells into which [`ScreenBytes`] divides light.
+const CELLS: usize = 4096;
+
+/// The bytes of a screen for many numbers of linear light: those of [`byte`] and [`encode`], from a table.
+pub(crate) struct ScreenBytes {
+    /// For each byte the least light that has it.
+    least: [f32; 256],
+    /// The byte of the darkest light of each cell.
+    first: [u8; CELLS + 1],
+}
+
+impl ScreenBytes {
+    /// The table.
+    pub(crate) fn new() -> Self {
+        let mut least = [0.0_f32; 256];
+        for code in 1..256 {
+            // Bits of positive numbers are in the order of the numbers.
+            let (mut low, mut high) = (least[code - 1].to_bits(), 1.0_f32.to_bits());
+            while low < high {
+                let middle = low + (high - low) / 2;
+                let is_there = usize::from(byte(encode(f32::from_bits(middle)))) >= code;
+                (low, high) = if is_there { (low, middle) } else { (middle + 1, high) };
+            }
+            least[code] = f32::from_bits(low);
+        }
+        let first = std::array::from_fn(|cell| {
+            let dark = cell as f32 / CELLS as f32;
+            (least.partition_point(|&least| least <= dark) - 1) as u8
+        });
+        Self { least, first }
+    }
+
+    /// The byte of linear light; light beyond 0 .. 1 is clamped, NaN is 0.
+    pub(crate) fn of(&self, linear: f32) -> u8 {
+        let x = unit(linear);
+        let mut code = self.first[(x * CELLS as f32) as usize];
+        while code < u8::MAX && x >= self.least[usize::from(code) + 1] {
+            code += 1;
+        }
+        code
+    }
+}
+
 /// Eight bits of a number from 0 to 1.
 pub(crate) fn byte(x: f32) -> u8 {
     (unit(x) * 255.0 + 0.5) as u8
@@ -49,6 +92,18 @@ mod tests {
         for step in 0..=255 {
             let x = step as f32 / 255.0;
             assert!((encode(decode(x)) - x).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_table_has_the_bytes_of_the_curve() {
+        let table = ScreenBytes::new();
+        for step in -50_000..=1_100_000 {
+            let x = step as f32 * 1e-6;
+            assert_eq!(table.of(x), byte(encode(x)), "{x}");
+        }
+        for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MIN_POSITIVE, -0.0] {
+            assert_eq!(table.of(x), byte(encode(x)), "{x}");
         }
     }
 

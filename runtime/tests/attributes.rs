@@ -66,7 +66,11 @@ fn groups_of_any_width_go_all_the_way() {
             match format {
                 Format::Glb => assert_eq!(names.matches("_MANY").count(), width.div_ceil(4), "{width} reals"),
                 Format::Ply => assert_eq!(names.matches("property float many").count(), width),
-                Format::Obj | Format::Stl => {}
+                Format::Usda => assert_eq!(
+                    names.matches(&format!("elementSize = {width}")).count(),
+                    usize::from(width > 1)
+                ),
+                Format::Obj | Format::Stl | Format::ThreeMf => {}
             }
         }
     }
@@ -218,8 +222,8 @@ fn steps_weigh_two_sides_at_a_time() {
     }
 }
 
-/// A formula may have a field where nothing that it is made of has: there the default is all of its answer, and
-/// dominates with all of its field.
+/// A formula may have a field where nothing that it is made of has: there the default is all of its answer,
+/// and dominates with all of its field.
 #[test]
 fn a_default_dominates_with_all_of_its_field() {
     let far = "union { point { at (9 0 0) radius 1 } point { at (9 1 0) radius 1 } }";

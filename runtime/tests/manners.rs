@@ -71,7 +71,7 @@ fn scenes_are_read_by_their_endings() {
     let unknown = Scene::load(Path::new("ball.stl")).unwrap_err();
     assert_eq!(
         unknown.to_string(),
-        "error: ball.stl is no scene by its ending `.stl`\n  scenes end in .jbt, .blob, .scene, .vm"
+        "error: ball.stl is no scene by its ending `.stl`\n  scenes end in .jbt, .vm, .blob, .scene, .rib, .pov, .inc, .json"
     );
     let missing = Scene::load("missing.jbt").unwrap_err();
     assert_eq!(missing.io().map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));

@@ -87,6 +87,10 @@ fn instances(tree: &CheckedTree) -> u64 {
             NodeKind::Primitive(_) => {
                 found.insert(format!("{warps}|{id:?}|{:?}", map.to_cols_array().map(|x| x + 0.0)));
             }
+            NodeKind::Particles(particles) => {
+                let place = map.to_cols_array().map(|x| x + 0.0);
+                found.extend((0..particles.len()).map(|it| format!("{warps}|{id:?}.{it}|{place:?}")));
+            }
             NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)

@@ -130,6 +130,7 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
             (NodeKind::Primitive(_), _) if !found.contains(&(id.0, maps.clone())) => found.push((id.0, maps)),
             (
                 NodeKind::Primitive(_)
+                | NodeKind::Particles(_)
                 | NodeKind::Combine(_)
                 | NodeKind::Expression(_)
                 | NodeKind::Select(_)

@@ -14,7 +14,8 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use jbt::{Box3, Compiler, Fineness, Polygonize};
-use jbt_benches::model::{Blob, blobs, tree};
+use jbt_benches::memory::peak;
+use jbt_benches::model::{Blob, blobs, cloud};
 
 /// The largest number of blobs, unless another one is asked for.
 const LARGEST: usize = 1_000_000;
@@ -80,7 +81,7 @@ impl Row {
         let (mut best, mut spent, mut triangles) = (f64::INFINITY, 0.0, 0);
         for _ in 0..RUNS {
             let begin = Instant::now();
-            let made = pool.install(|| polygonize.mesh(&Compiler::new(), &tree(&blobs)).run());
+            let made = pool.install(|| polygonize.mesh(&Compiler::new(), &cloud(&blobs)).run());
             let seconds = begin.elapsed().as_secs_f64();
             (best, spent) = (best.min(seconds), spent + seconds);
             triangles = made.expect("blobs have a mesh").mesh.triangles.len();
@@ -97,13 +98,6 @@ impl Row {
             peak().map_or_else(|| "?".to_owned(), |bytes| format!("{:.0}", bytes as f64 / 1e6)),
         );
     }
-}
-
-/// The most memory that this process has had, in bytes; `None` where the system does not tell.
-fn peak() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(1024 * line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok()?)
 }
 
 /// Runs each row in a process of its own.

@@ -41,7 +41,7 @@ struct MeshTask {
 impl MeshTask {
     fn new(blobs: Vec<Blob>, cells: usize, options: Options) -> Self {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
-        let tree = model::tree(&blobs);
+        let tree = model::cloud(&blobs);
         Self { blobs, tree, cells, pool: pool.expect("threads can be made") }
     }
 

@@ -14,7 +14,7 @@ use glam::{DAffine3, Mat3, Vec3};
 use jbt::tree::AttributeValue;
 use jbt::tree::Warp;
 use jbt::tree::{Combinator, operators::Ricci};
-use jbt::tree::{NodeKind, Primitive};
+use jbt::tree::{NodeKind, Particles, Primitive};
 use jbt::{CheckedTree, Falloff, NodeId};
 
 use super::skeleton::Skeleton;
@@ -129,6 +129,20 @@ impl Compact {
         let node = tree.node(id);
         match &node.kind {
             NodeKind::Primitive(primitive) => self.leaf(primitive, &map, &values),
+            NodeKind::Particles(particles) => {
+                self.steps.push(Step::Open(Operator::Sum));
+                for particle in 0..particles.len() {
+                    let values = own_values(tree, (particles, particle), &values);
+                    let primitive = Primitive {
+                        skeleton: particles.point(particle).into(),
+                        falloff: *particles.falloff(),
+                        radius: particles.radius(particle),
+                        strength: particles.strength(particle),
+                    };
+                    self.leaf(&primitive, &map, &values);
+                }
+                self.steps.push(Step::Close);
+            }
             NodeKind::Combine(combinator) => combine(*combinator, &node.children, map, &values, tasks),
             NodeKind::Expression(_) => unreachable!("no model that is compared has a formula"),
             NodeKind::Select(_) => {
@@ -196,6 +210,18 @@ impl Compact {
         self.maps.push(Map { linear, translation });
         Some(self.maps.len() as u32 - 1)
     }
+}
+
+/// The values of one of particles, below these.
+fn own_values(tree: &CheckedTree, (particles, particle): (&Particles, usize), above: &[f32]) -> Vec<f32> {
+    let (mut values, mut start) = (above.to_vec(), 0);
+    for group in tree.attributes() {
+        if let Some(own) = particles.values_of(&group.name) {
+            values[start..].iter_mut().zip(own.of(particle)).for_each(|(value, own)| *value = own as f32);
+        }
+        start += group.width();
+    }
+    values
 }
 
 /// The values of leaves without attributes.

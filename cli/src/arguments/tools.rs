@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::Shell;
-use jbt::Query;
+use jbt::{Query, SceneFormat};
 
-use super::scene::{PartArguments, definition};
 use super::wanted::{Wanted, WantedParser};
 use super::words::queries;
-use super::{LatticeArguments, LevelName, SceneArguments};
+use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
+use crate::formats::TextKind;
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
@@ -39,6 +39,25 @@ pub struct ShowArguments {
     /// JBT_LEVEL]
     #[arg(long, value_enum)]
     pub level: Option<LevelName>,
+}
+
+/// What `jbt convert` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The text is the same model: it has the same field and attributes to the last bit, and stands the same way up. Names, comments
+and loops of the scene are not kept. docs/readers.md says what is read of each format, and what is left out.
+
+Examples:
+  jbt convert drop.pov -o drop.jbt
+  jbt convert scene.pov --object Flower -o flower.jbt
+  jbt convert tree.json -o - | less")]
+pub struct ConvertArguments {
+    /// What to write.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Where the text goes.
+    #[command(flatten)]
+    pub output: OutputArguments<TextKind>,
 }
 
 /// What `jbt count` takes.
@@ -134,15 +153,14 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = CHECK_HELP)]
 pub struct CheckArguments {
-    /// The scenes: .jbt texts, ParsIP .blob or .scene, .vm programs; `-` is the standard input
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(
+        value_name = "SCENE",
+        required = true,
+        help = format!("The scenes, each {}; `-` is the standard input", SceneFormat::list())
+    )]
     pub scenes: Vec<PathBuf>,
-    /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    pub definitions: Vec<(String, f64)>,
-    /// Parts of each.
     #[command(flatten)]
-    pub parts: PartArguments,
+    pub options: SceneOptions,
     /// Print one JSON object instead of messages and summaries
     #[arg(long)]
     pub json: bool,

@@ -37,6 +37,7 @@ fn check_reports_for_machines() {
         json!({
             "file": "bad.jbt",
             "severity": "error",
+            "byte": 34,
             "line": 4,
             "column": 13,
             "end": { "line": 4, "column": 18 },

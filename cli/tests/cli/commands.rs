@@ -514,12 +514,14 @@ fn help_and_version() {
     assert_eq!(folder.jbt(&["--version"]).code(0).stdout(), concat!("jbt ", env!("CARGO_PKG_VERSION"), "\n"));
     let all = folder.jbt(&["--help"]).code(0).stdout();
     assert!(all.contains("(.vm)"), "{all}");
-    for command in ["mesh", "render", "contour", "sample", "eval", "show", "count", "stats", "check"] {
+    for command in
+        ["mesh", "render", "contour", "sample", "eval", "convert", "show", "count", "stats", "check"]
+    {
         assert!(all.contains(command));
         let help = folder.jbt(&[command, "--help"]).code(0).stdout();
         assert!(help.contains("SCENE"));
         let flat = help.split_whitespace().collect::<Vec<_>>().join(" ");
-        for ending in [".jbt", ".blob", ".scene", ".vm"] {
+        for ending in [".jbt", ".blob", ".scene", ".vm", ".pov", ".rib", ".json"] {
             assert!(flat.contains(ending), "{command}: {ending}: {help}");
         }
     }
@@ -547,9 +549,13 @@ fn sample_writes_an_array() {
     let at = |x: usize, y: usize, z: usize| numbers[(z * 5 + y) * 5 + x];
     assert_eq!((at(2, 2, 2), at(3, 2, 2), at(2, 2, 5)), (1.0, 0.5, 0.0));
 
-    let all =
-        folder.jbt(&[&["sample", "ball.jbt", "-o", "-", "--query", "all", "-q"][..], &lattice].concat());
+    let all = folder.jbt(
+        &[&["sample", "ball.jbt", "-o", "-", "--format", "npy", "--query", "all", "-q"][..], &lattice]
+            .concat(),
+    );
     assert_eq!(all.code(0).stdout_bytes().len(), 128 + 4 * 150 * 7);
+    folder.jbt(&[&["sample", "ball.jbt", "-o", "a.vdb"][..], &lattice].concat()).code(0);
+    assert!(folder.read("a.vdb").starts_with(b" BDV"));
     let huge = ["sample", "ball.jbt", "-o", "b.npy", "--resolution", "5000"];
     folder.jbt(&huge).code(3).says("more than 1073741824 numbers");
     folder.jbt(&["sample", "ball.jbt", "-o", "b.npy", "--cell", "0"]).code(2);

@@ -28,7 +28,7 @@ fn commands(scene: &str) -> [Vec<&str>; 8] {
 fn bad_scenes_are_located_errors_for_every_command() {
     let cases: [(&str, &[u8], &str); 9] = [
         ("empty.jbt", b"", "empty.jbt:1:1: error: the file is empty"),
-        ("garbage.jbt", b"\x00\xff\xfe\x1b]0;x\x07 %%% \x9b", "garbage.jbt:1:2: error: "),
+        ("garbage.jbt", b"\x00\xff\xfe\x1b]0;x\x07 %%% \x9b", "garbage.jbt: byte 1: error: "),
         ("nan.jbt", b"jbt 1\npoint { radius 0 / 0 }", "nan.jbt:2:"),
         ("zero.jbt", b"jbt 1\npoint { radius 0 }", "zero.jbt:2:"),
         ("unknown.jbt", b"jbt 1\npiont { radius 1 }", "unknown.jbt:2:1: error: "),
@@ -130,8 +130,11 @@ fn usage_errors() {
     folder.jbt(&["scene.jbt"]).code(2).says("a command stands before the scene, as `jbt render scene.jbt`");
     folder.jbt(&["nothing"]).code(2).says("unrecognized subcommand");
     folder.jbt(&[]).code(2).says("Usage");
-    folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj or .stl");
-    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("needs --format glb, ply, obj or stl");
+    folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj, .stl, .3mf or .usda");
+    folder
+        .jbt(&["mesh", "scene.jbt", "-o", "-"])
+        .code(2)
+        .says("needs --format glb, ply, obj, stl, 3mf or usda");
     mesh(&["--up", "x"]).code(2).says("y, z");
     mesh(&["--colors", "rgb"]).code(2).says("srgb, linear");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.stl", "--colors", "srgb"]).code(2).says("no colours");

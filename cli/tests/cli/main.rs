@@ -10,6 +10,7 @@ mod hostile;
 mod manual;
 mod names;
 mod outputs;
+mod readers;
 mod render;
 mod signals;
 mod timeline;

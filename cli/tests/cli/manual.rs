@@ -4,8 +4,23 @@ use std::fs;
 
 use crate::folder::Folder;
 
-const COMMANDS: [&str; 11] =
-    ["mesh", "render", "contour", "sample", "eval", "show", "count", "stats", "check", "completions", "man"];
+const COMMANDS: [&str; 12] = [
+    "mesh",
+    "render",
+    "contour",
+    "sample",
+    "eval",
+    "convert",
+    "show",
+    "count",
+    "stats",
+    "check",
+    "completions",
+    "man",
+];
+
+/// A page for each command and one for the program.
+const PAGES: usize = COMMANDS.len() + 1;
 
 #[test]
 fn completions_for_every_shell() {
@@ -27,7 +42,7 @@ fn manual_pages_for_every_command() {
     folder.jbt(&["man", "pages"]).code(4).says("cannot write pages/jbt.1: there is no folder pages");
     fs::create_dir(folder.path("pages")).unwrap();
     let ran = folder.jbt(&["man", "pages"]).code(0);
-    assert_eq!(ran.stdout(), "pages: 12 pages\n");
+    assert_eq!(ran.stdout(), format!("pages: {PAGES} pages\n"));
     let page = |name: &str| String::from_utf8(folder.read(&format!("pages/{name}.1"))).unwrap();
     assert!(page("jbt").contains(".TH jbt 1"));
     for command in COMMANDS {
@@ -36,6 +51,6 @@ fn manual_pages_for_every_command() {
         assert!(page.contains("NAME") && page.contains("Examples:"), "{page}");
     }
     assert!(page("jbt-mesh").contains(".glb"));
-    assert_eq!(fs::read_dir(folder.path("pages")).unwrap().count(), 12, "and nothing else");
+    assert_eq!(fs::read_dir(folder.path("pages")).unwrap().count(), PAGES, "and nothing else");
     folder.jbt(&["man", "pages", "-q"]).code(0);
 }

@@ -25,11 +25,12 @@ fn an_unknown_ending_is_a_usage_error_that_lists_the_known_ones() {
     let folder = folder();
     for (command, ending, quick) in WRITERS {
         let known = match command {
-            "mesh" => ".glb, .ply, .obj or .stl",
+            "mesh" => ".glb, .ply, .obj, .stl, .3mf or .usda",
+            "sample" => ".npy or .vdb",
             "contour" => ".svg or .png",
             _ => &format!(".{ending}"),
         };
-        for name in ["x.jpg", "x.vdb", "x", ending, "x.png.gz", "x\u{1b}[2J.jpg"] {
+        for name in ["x.jpg", "x.txt", "x", ending, "x.png.gz", "x\u{1b}[2J.jpg"] {
             let ran = folder.jbt(&[&[command, "scene.jbt", "-o", name], quick].concat()).code(2);
             ran.says(&format!("does not end with {known}; --format says what to write"));
             assert!(!folder.path(name).exists());
@@ -50,7 +51,7 @@ fn an_unknown_ending_is_a_usage_error_that_lists_the_known_ones() {
 fn the_standard_output_is_still_an_output() {
     let folder = folder();
     for (command, ending, quick) in WRITERS {
-        let several = ["mesh", "contour"].contains(&command);
+        let several = ["mesh", "contour", "sample"].contains(&command);
         let format: &[&str] = if several { &["--format", ending] } else { &[] };
         let arguments = [&[command, "scene.jbt", "-o", "-"], quick, format].concat();
         let piped = folder.jbt(&arguments).code(0).stdout_bytes().to_vec();

@@ -9,13 +9,12 @@ use std::iter::repeat_n;
 use glam::DVec3;
 
 use super::computed::{Computed, attribute as given};
-use super::instance::{LeafField, Scene};
+use super::instance::Scene;
 use super::position::MapKind;
 use super::recipe::{ColumnNumbers, Member};
 use jbt_model::attribute::{AttributeGroup, AttributeValue, Textured};
 use jbt_model::expression::Form;
 use jbt_model::falloff::FalloffKind;
-use jbt_model::kind::Primitive;
 use jbt_model::skeleton::{BEYOND, SkeletonKind};
 use jbt_model::texture::TextureKind;
 use jbt_model::warp::WarpCode;
@@ -32,7 +31,10 @@ pub(super) trait Names: IntoIterator<Item: AsRef<str>> {}
 
 impl<N: IntoIterator<Item: AsRef<str>>> Names for N {}
 
-fn columns<N: Names>(names: N, numbers: impl Fn(&Scene<'_>, Member, &mut Vec<f64>) + 'static) -> Columns<N> {
+fn columns<N: Names>(
+    names: N,
+    numbers: impl Fn(&Scene<'_>, Member, &mut Vec<f64>) + Send + Sync + 'static,
+) -> Columns<N> {
     Columns { names, numbers: Box::new(numbers) }
 }
 
@@ -44,7 +46,9 @@ pub(super) fn iso2() -> Columns<impl Names> {
 /// The place of an operand in the file.
 pub(super) fn order() -> Columns<impl Names> {
     columns(["order"], |_, operand, row| {
-        let Member::Operand { order, .. } = operand else { unreachable!("only operands have an order") };
+        let (Member::Operand { order, .. } | Member::Particle { order, .. }) = operand else {
+            unreachable!("only operands have an order")
+        };
         row.push(f64::from(order));
     })
 }
@@ -52,7 +56,7 @@ pub(super) fn order() -> Columns<impl Names> {
 /// The channels of an attribute group, with these numbers.
 fn channels(
     group: &AttributeGroup,
-    numbers: impl for<'s> Fn(&'s Scene<'_>, Member) -> &'s [f64] + 'static,
+    numbers: impl for<'s> Fn(&'s Scene<'_>, Member) -> &'s [f64] + Send + Sync + 'static,
 ) -> Columns<impl Names> {
     let names = (0..group.width()).map(|index| group.channel(index));
     columns(names, move |scene, member, row| row.extend(numbers(scene, member)))
@@ -65,27 +69,35 @@ pub(super) fn default(group: &AttributeGroup, index: usize) -> Columns<impl Name
 
 /// What a leaf has of the attribute group with this index, if that is not computed.
 pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Names> {
-    channels(group, move |scene, leaf| {
+    let names = (0..group.width()).map(|index| group.channel(index));
+    columns(names, move |scene, leaf, row| {
+        let group = &scene.tree.attributes()[index];
+        if let Some((particles, place)) = leaf.one_of(scene)
+            && let Some(values) = particles.values_of(&group.name)
+        {
+            row.extend(values.of(place));
+            return;
+        }
         let (bindings, _) = leaf.attributes(scene);
-        match bindings[index].map(|bound| given(scene.tree, bound.node)) {
-            None => &scene.tree.attributes()[index].default,
+        row.extend(match bindings[index].map(|bound| given(scene.tree, bound.node)) {
+            None => &group.default,
             Some(AttributeValue::Numbers(numbers)) => numbers,
             Some(AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_)) => {
                 unreachable!("it is computed")
             }
-        }
+        });
     })
 }
 
 /// The inverse of the map of a leaf, a warp or a formula.
 pub(super) fn map(kind: MapKind) -> Columns<impl Names> {
-    columns(kind.columns(), move |scene, member, row| kind.push_columns(member.map(scene), row))
+    columns(kind.columns(), move |scene, member, row| kind.push_columns(&member.map(scene), row))
 }
 
 /// The inverse of the map of what is computed of an attribute group.
 pub(super) fn map_of_computed(kind: MapKind, group: usize) -> Columns<impl Names> {
     columns(kind.columns(), move |scene, member, row| {
-        kind.push_columns(&computed(scene, member, group).map, row);
+        kind.push_columns(&member.map_of_computed(scene, group), row);
     })
 }
 
@@ -94,43 +106,40 @@ pub(super) fn warp(code: &WarpCode) -> Columns<impl Names> {
     columns(code.columns(), |scene, warp, row| scene.warp(warp.node(scene)).columns(row))
 }
 
-fn leaf<'s>(scene: &'s Scene<'_>, member: Member) -> (&'s LeafField, &'s Primitive) {
-    let field = member.field(scene);
-    (scene.field(field), scene.primitive(field))
+/// How many times as large as it was written the skeleton of a leaf is in its pose.
+fn scale(scene: &Scene<'_>, leaf: Member) -> f64 {
+    scene.field(leaf.field(scene)).scale
 }
 
 /// The skeleton of a leaf.
 pub(super) fn skeleton(kind: SkeletonKind) -> Columns<impl Names> {
     columns(kind.columns(), |scene, member, row| {
-        let (field, primitive) = leaf(scene, member);
-        primitive.skeleton.columns(field.scale, row);
+        scene.primitive(member.field(scene)).skeleton.columns(scale(scene, member), row);
     })
 }
 
 /// A distance that is beyond the support of a leaf, in its pose.
 pub(super) fn beyond() -> Columns<impl Names> {
     columns(["beyond"], |scene, member, row| {
-        let (field, primitive) = leaf(scene, member);
-        row.push(BEYOND * field.scale * primitive.radius);
+        row.push(BEYOND * scale(scene, member) * member.numbers(scene).radius);
     })
 }
 
 /// `-1 / R^2`, with the support radius of a leaf in its pose.
 pub(super) fn neg_inv_r2() -> Columns<impl Names> {
     columns(["neg_inv_r2"], |scene, member, row| {
-        let (field, primitive) = leaf(scene, member);
-        row.push(-(field.scale * primitive.radius).powi(-2));
+        row.push(-(scale(scene, member) * member.numbers(scene).radius).powi(-2));
     })
 }
 
 /// The falloff of a leaf.
 pub(super) fn falloff(kind: FalloffKind) -> Columns<impl Names> {
-    columns(kind.columns(), move |scene, member, row| leaf(scene, member).1.falloff.columns(kind, row))
+    columns(kind.columns(), move |scene, member, row| member.numbers(scene).falloff.columns(kind, row))
 }
 
 /// The strength of a leaf.
 pub(super) fn strength() -> Columns<impl Names> {
-    columns(["strength"], |scene, member, row| row.push(leaf(scene, member).1.strength))
+    columns(["strength"], |scene, member, row| row.push(member.numbers(scene).strength))
 }
 
 /// An operator, whose columns have these names.

@@ -133,6 +133,7 @@ pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
     match &tree.node(node).kind {
         NodeKind::Attribute { value, .. } => value,
         NodeKind::Primitive(_)
+        | NodeKind::Particles(_)
         | NodeKind::Combine(_)
         | NodeKind::Expression(_)
         | NodeKind::Select(_)

@@ -3,6 +3,7 @@
 //! An *instance* is a node at a position with attribute bindings. A node that is reached twice with the
 //! same of each is one instance with two uses; under other coordinates it is another one.
 
+use std::borrow::Cow;
 use std::slice::from_ref;
 
 use glam::{DAffine3, DVec3};
@@ -12,18 +13,21 @@ use super::demand::Demand;
 use super::names::ComputedId;
 pub(super) use super::names::{BindingsId, FieldId, InstanceId, PositionId, SpaceId};
 use super::position::{MapKind, Position};
+use super::run::{LeafNumbers, PointRun};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, MapCode, ReduceCode};
 use jbt_model::expression::Expression;
 use jbt_model::falloff::FalloffKind;
 use jbt_model::kind::{NodeKind, Primitive};
-use jbt_model::skeleton::SkeletonKind;
+use jbt_model::particles::Particles;
+use jbt_model::skeleton::{Skeleton, SkeletonKind};
 use jbt_model::warp::Warp;
 use jbt_model::written::Written;
 
 mod asked;
 mod binding;
 mod find;
+mod particles;
 
 /// What a leaf is bound to, of one attribute group.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -46,7 +50,7 @@ pub(super) struct Inside {
     pub(super) uses: u32,
 }
 
-/// A leaf at a position.
+/// A leaf at a position, or a run of particles.
 #[derive(Clone, Debug)]
 pub(super) struct LeafField {
     pub(super) node: NodeId,
@@ -54,12 +58,14 @@ pub(super) struct LeafField {
     /// How many instances, with different attributes, have this field.
     pub(super) uses: u32,
     /// The map from the pose to the space in which the leaf is asked; rows hold its inverse. In the pose the
-    /// skeleton is [`scale`](Self::scale) times as large as it was written.
+    /// skeleton is [`scale`](Self::scale) times as large as it was written. Of a run, that of the first one.
     pub(super) map: DAffine3,
     /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here;
     /// other maps leave it at 1.
     pub(super) scale: f64,
     pub(super) code: LeafCode,
+    /// Which particles it stands for, if it is no primitive.
+    pub(super) run: Option<Box<PointRun>>,
 }
 
 /// What a leaf without computed attributes is as code.
@@ -187,17 +193,79 @@ impl<'a> Scene<'a> {
         count
     }
 
+    /// The primitive of a leaf that is no run.
     pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
         match &self.tree.node(self.field(field).node).kind {
             NodeKind::Primitive(primitive) => primitive,
-            NodeKind::Combine(_)
+            NodeKind::Particles(_)
+            | NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
             | NodeKind::Attribute { .. } => {
-                unreachable!("leaf fields are made of primitives")
+                unreachable!("leaf fields without a run are made of primitives")
             }
+        }
+    }
+
+    /// The particles of a node that a run is of.
+    pub(super) fn particles(&self, node: NodeId) -> &'a Particles {
+        match &self.tree.node(node).kind {
+            NodeKind::Particles(particles) => particles,
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => unreachable!("runs are made of particles"),
+        }
+    }
+
+    /// The run of particles that an instance is, if it is one.
+    pub(super) fn run(&self, id: InstanceId) -> Option<&PointRun> {
+        match &self.instance(id).kind {
+            InstanceKind::Leaf { field, .. } => self.field(*field).run.as_deref(),
+            InstanceKind::Warp { .. }
+            | InstanceKind::Reduce { .. }
+            | InstanceKind::Difference { .. }
+            | InstanceKind::Map { .. }
+            | InstanceKind::Expression { .. }
+            | InstanceKind::Select { .. } => None,
+        }
+    }
+
+    /// The map of a leaf, or of one of particles by its place in their arrays: see [`LeafField::map`].
+    pub(super) fn leaf_map(&self, field: &LeafField, place: usize) -> DAffine3 {
+        if field.run.is_none() {
+            return field.map;
+        }
+        let at = self.particles(field.node).at(place);
+        DAffine3 { translation: self.position(field.position).map.transform_point3(at), ..field.map }
+    }
+
+    /// The skeleton of a leaf, or of one of particles by its place in their arrays.
+    pub(super) fn leaf_skeleton(&self, id: FieldId, place: usize) -> Cow<'a, Skeleton> {
+        let field = self.field(id);
+        match &field.run {
+            None => Cow::Borrowed(&self.primitive(id).skeleton),
+            Some(_) => Cow::Owned(self.particles(field.node).point(place).into()),
+        }
+    }
+
+    /// The numbers of a leaf, or of one of particles by its place in their arrays.
+    pub(super) fn leaf_numbers(&self, id: FieldId, place: usize) -> LeafNumbers<'a> {
+        let field = self.field(id);
+        if field.run.is_none() {
+            let Primitive { radius, strength, falloff, .. } = self.primitive(id);
+            return LeafNumbers { radius: *radius, strength: *strength, falloff };
+        }
+        let particles = self.particles(field.node);
+        LeafNumbers {
+            radius: particles.radius(place),
+            strength: particles.strength(place),
+            falloff: particles.falloff(),
         }
     }
 
@@ -208,6 +276,7 @@ impl<'a> Scene<'a> {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Primitive(_)
+            | NodeKind::Particles(_)
             | NodeKind::Warp(_)
             | NodeKind::Attribute { .. } => {
                 unreachable!("only formulas have expressions")
@@ -251,6 +320,7 @@ impl<'a> Scene<'a> {
         match &self.tree.node(node).kind {
             NodeKind::Combine(combinator) => *combinator,
             NodeKind::Primitive(_)
+            | NodeKind::Particles(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
@@ -266,6 +336,7 @@ impl<'a> Scene<'a> {
         match &self.tree.node(node).kind {
             NodeKind::Attribute { name, .. } => name,
             NodeKind::Primitive(_)
+            | NodeKind::Particles(_)
             | NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
@@ -277,7 +348,8 @@ impl<'a> Scene<'a> {
     pub(super) fn warp(&self, node: NodeId) -> &'a Warp {
         match &self.tree.node(node).kind {
             NodeKind::Warp(warp) => warp,
-            NodeKind::Combine(_)
+            NodeKind::Particles(_)
+            | NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::instance::{FieldId, Scene};
+use super::run::LeafNumbers;
 use super::shape::Hoist;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::{NodeKind, Primitive};
@@ -25,8 +26,8 @@ use jbt_model::kind::{NodeKind, Primitive};
 /// ```
 pub struct LeafInstances<'a> {
     scene: Scene<'a>,
-    /// Those that selectors do not leave out.
-    asked: Vec<FieldId>,
+    /// Those that selectors do not leave out; of particles, with the place in their arrays.
+    asked: Vec<(FieldId, u32)>,
 }
 
 impl fmt::Debug for LeafInstances<'_> {
@@ -41,7 +42,14 @@ impl<'a> LeafInstances<'a> {
     pub fn new(tree: &'a CheckedTree) -> Self {
         let scene = Scene::new(tree);
         let all = (0..scene.fields.len() as u32).map(FieldId);
-        let asked = all.filter(|&field| scene.demand.is_asked(Hoist::Field(field))).collect();
+        let mut asked = Vec::new();
+        for field in all.filter(|&field| scene.demand.is_asked(Hoist::Field(field))) {
+            match &scene.field(field).run {
+                None => asked.push((field, 0)),
+                // There are at most limits::MAX_PARTICLES.
+                Some(run) => asked.extend((0..run.len()).map(|number| (field, run.place(number) as u32))),
+            }
+        }
         Self { scene, asked }
     }
 
@@ -60,7 +68,7 @@ impl<'a> LeafInstances<'a> {
     /// The node of one of them. Panics if there are not as many.
     #[must_use]
     pub fn node(&self, index: usize) -> NodeId {
-        self.scene.field(self.asked[index]).node
+        self.scene.field(self.asked[index].0).node
     }
 
     /// A model of this leaf alone, where it stands in the whole, in local coordinates of that and with
@@ -69,8 +77,10 @@ impl<'a> LeafInstances<'a> {
     /// within rounding. Panics if there are not as many.
     #[must_use]
     pub fn alone(&self, index: usize) -> CheckedTree {
-        let field = self.asked[index];
-        let leaf = Primitive { strength: 1.0, ..self.scene.primitive(field).clone() };
+        let (field, place) = self.asked[index];
+        let LeafNumbers { radius, falloff, .. } = self.scene.leaf_numbers(field, place as usize);
+        let skeleton = self.scene.leaf_skeleton(field, place as usize).into_owned();
+        let leaf = Primitive { skeleton, falloff: *falloff, radius, strength: 1.0 };
         let mut maps = Vec::new();
         let mut position = self.scene.position(self.scene.field(field).position);
         loop {

@@ -18,7 +18,9 @@
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `columns`: what each column is called, and its number.
 //! * `recipe`: how the rows of a table are filled: `emit` writes that down as it declares columns.
-//! * `rows`: fills every row by the recipe of its table.
+//! * `run`: particles that have one code are one leaf, which stands for many rows.
+//! * `rows`: fills every row by the recipe of its table; those of particles in parts, which `workers` do at
+//!   once.
 //! * `support`: finds for each instance where it can be anything but zero, in the program's own arithmetic.
 //! * [`prune_info`]: what pruning has to know: supports, rules, and the range function; `ranges` makes
 //!   it.
@@ -42,9 +44,11 @@ pub mod prune_info;
 mod ranges;
 mod recipe;
 mod rows;
+mod run;
 mod shape;
 mod slopes;
 mod support;
+mod workers;
 
 use std::fmt;
 
@@ -56,6 +60,7 @@ use jbt_model::query::Query;
 
 pub use leaves::LeafInstances;
 pub use prune_info::{PruneInfo, RangeFunction};
+pub use workers::{Serial, Workers};
 
 /// A program, before any pass, and its numbers.
 #[derive(Clone, Debug)]
@@ -72,6 +77,8 @@ pub struct Lowered {
 pub struct Lowering<'a> {
     scene: instance::Scene<'a>,
     shapes: shape::Shapes,
+    /// Who fills the rows of particles.
+    workers: &'a dyn Workers,
 }
 
 impl fmt::Debug for Lowering<'_> {
@@ -85,9 +92,15 @@ impl<'a> Lowering<'a> {
     /// Cost: all paths of the tree that do not lead to the same place.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
+        Self::with(tree, &Serial)
+    }
+
+    /// The same, with workers for the rows of particles. They change no bit.
+    #[must_use]
+    pub fn with(tree: &'a CheckedTree, workers: &'a dyn Workers) -> Self {
         let scene = instance::Scene::new(tree);
         let shapes = shape::Shapes::new(&scene);
-        Self { scene, shapes }
+        Self { scene, shapes, workers }
     }
 
     /// The model.
@@ -105,7 +118,7 @@ impl<'a> Lowering<'a> {
     /// beyond [`jbt_ir::limits`].
     pub fn answers(&self, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
         let code = emit::emit(&self.scene, &self.shapes, query)?;
-        let rows = rows::rows(&self.scene, &self.shapes, &code)?;
+        let rows = rows::rows(&self.scene, &self.shapes, &code, self.workers)?;
         Ok(Lowered { function: code.function, tables: rows.tables })
     }
 
@@ -114,7 +127,7 @@ impl<'a> Lowering<'a> {
     /// # Errors
     /// Those of [`answers`](Self::answers).
     pub fn ranges(&self) -> Result<RangeFunction, Vec<Diagnostic>> {
-        ranges::ranges(&self.scene, &self.shapes)
+        ranges::ranges(&self.scene, &self.shapes, self.workers)
     }
 }
 

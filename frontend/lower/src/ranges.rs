@@ -1,5 +1,7 @@
 //! Makes the range function of a scene, and what there is to know about its tables.
 
+use std::iter::repeat_n;
+
 use jbt_ir::{Entity as _, Function, InstKind, Rule, Store};
 
 use super::emit::{self, TableCode};
@@ -9,17 +11,22 @@ use super::recipe::Member;
 use super::rows;
 use super::shape::{Hoist, Shapes};
 use super::support::Supports;
+use super::workers::Workers;
 use jbt_model::diagnostic::Diagnostic;
 
 /// The range function of a scene, and what there is to know about its tables.
-pub(super) fn ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<RangeFunction, Vec<Diagnostic>> {
+pub(super) fn ranges(
+    scene: &Scene<'_>,
+    shapes: &Shapes,
+    workers: &dyn Workers,
+) -> Result<RangeFunction, Vec<Diagnostic>> {
     let code = emit::emit_ranges(scene, shapes)?;
-    let rows = rows::rows(scene, shapes, &code)?;
-    let supports = Supports::new(scene);
+    let rows = rows::rows(scene, shapes, &code, workers)?;
+    let mut supports = Supports::new(scene, workers);
     let mut tables = Store::new();
     let rules = rules(&code.function);
     for ((code, members), rule) in code.tables.iter().zip(&rows.members).zip(rules) {
-        tables.push(table_info(scene, &supports, (code, rule), members));
+        tables.push(table_info(scene, &mut supports, (code, rule), members));
     }
     let iso2 = (2.0 * scene.tree.iso()) as f32;
     let info = PruneInfo {
@@ -45,7 +52,7 @@ fn rules(function: &Function) -> Vec<Rule> {
 
 fn table_info(
     scene: &Scene<'_>,
-    supports: &Supports<'_>,
+    supports: &mut Supports<'_>,
     (code, rule): (&TableCode, Rule),
     members: &[Member],
 ) -> TablePruneInfo {
@@ -54,18 +61,29 @@ fn table_info(
         (_, Some(probe)) => SupportSpace::Probed(probe),
         (_, None) => SupportSpace::Unknown,
     };
+    let (mut nodes, mut found) = (Vec::with_capacity(members.len()), Vec::with_capacity(members.len()));
+    for member in members {
+        nodes.extend(repeat_n(member.node(scene), member.rows(scene)));
+        match member.run(scene) {
+            Some(_) if found.is_empty() => found = supports.take_run(member.field(scene)),
+            Some(_) => found.append(&mut supports.take_run(member.field(scene))),
+            None => found.push(support(supports, member)),
+        }
+    }
     TablePruneInfo {
         space,
-        supports: members.iter().map(|member| support(supports, member)).collect(),
+        supports: found.into(),
         rule,
-        nodes: members.iter().map(|member| member.node(scene)).collect(),
+        nodes,
         is_hoisted: members.iter().any(|member| matches!(member, Member::Hoisted(_))),
     }
 }
 
 fn support(supports: &Supports<'_>, member: &Member) -> Support {
     match member {
-        Member::Operand { id, .. } | Member::Hoisted(Hoist::Instance(id)) => supports.of(*id),
+        Member::Operand { id, .. } | Member::Particle { id, .. } | Member::Hoisted(Hoist::Instance(id)) => {
+            supports.of(*id)
+        }
         Member::Hoisted(Hoist::Field(field)) => supports.of_field(*field),
         Member::Piece(field, piece) => supports.of_piece(*field, *piece),
         Member::Hoisted(Hoist::Space(_) | Hoist::Computed(_)) => Support::EVERYWHERE,

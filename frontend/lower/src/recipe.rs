@@ -28,7 +28,7 @@ use super::names::Hoist;
 use super::shape::Shapes;
 
 /// Pushes the numbers of columns, for what stands at their place. Numbers are derived in f64.
-pub(super) type ColumnNumbers = Box<dyn Fn(&Scene<'_>, Member, &mut Vec<f64>)>;
+pub(super) type ColumnNumbers = Box<dyn Fn(&Scene<'_>, Member, &mut Vec<f64>) + Send + Sync>;
 
 /// What to do for a row.
 pub(super) enum RowStep {

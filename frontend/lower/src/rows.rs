@@ -4,29 +4,46 @@ use jbt_ir::{Entity, Rows, Schema, Store, Tables};
 
 use super::emit::Code;
 use super::instance::Scene;
-use super::names::FieldId;
-use super::recipe::{Member, Owned, RowPlaces, RowStep};
+use super::names::{FieldId, InstanceId};
+use super::recipe::{Member, Owned, RowPlace, RowPlaces, RowStep};
+use super::run::PointRun;
 use super::shape::Shapes;
+use super::workers::{Workers, in_parts};
 use jbt_model::diagnostic::Diagnostic;
 
 /// The numbers, and what they belong to.
 pub(super) struct Written {
     pub(super) tables: Tables,
-    /// What is behind each row of each table.
+    /// What is behind the rows of each table: runs of particles are several rows.
     pub(super) members: Vec<Vec<Member>>,
 }
 
+/// Rows that are made at once.
+pub(super) const ROWS_AT_ONCE: usize = 1 << 14;
+
 /// Writes the numbers.
-pub(super) fn rows(scene: &Scene<'_>, shapes: &Shapes, code: &Code) -> Result<Written, Vec<Diagnostic>> {
+pub(super) fn rows(
+    scene: &Scene<'_>,
+    shapes: &Shapes,
+    code: &Code,
+    workers: &dyn Workers,
+) -> Result<Written, Vec<Diagnostic>> {
     let mut writer = Writer::new(scene, shapes, code);
     for (table, code) in code.tables.iter().enumerate() {
         // Pieces have been written with their leaves.
-        let rows = writer.tables[table].count..writer.members[table].len();
-        let stride = writer.tables[table].stride;
-        writer.tables[table].numbers.reserve(rows.len() * stride);
-        for row in rows {
-            writer.row(table, &code.recipe, writer.members[table][row]);
+        if writer.tables[table].count > 0 {
+            continue;
         }
+        let stride = writer.tables[table].stride;
+        let members = std::mem::take(&mut writer.members[table]);
+        writer.tables[table].numbers.reserve(members.len() * stride);
+        for &member in &members {
+            match member.run(scene) {
+                Some(run) => writer.run(table, &code.recipe, (member, run), workers),
+                None => writer.row(table, &code.recipe, member),
+            }
+        }
+        writer.members[table] = members;
     }
     if !writer.errors.is_empty() {
         return Err(writer.errors);
@@ -42,8 +59,10 @@ struct Writer<'a> {
     scene: &'a Scene<'a>,
     shapes: &'a Shapes,
     tables: Vec<Rows>,
-    /// By table and row.
+    /// By table.
     members: Vec<Vec<Member>>,
+    /// By table, how many rows there will be.
+    owned: Vec<usize>,
     errors: Vec<Diagnostic>,
     /// Of the row in progress.
     places: RowPlaces,
@@ -55,9 +74,9 @@ impl<'a> Writer<'a> {
         let of = |schema: &Schema| Rows { stride: schema.columns.len(), starts: vec![0], ..Rows::default() };
         let tables: Vec<Rows> = code.function.tables.values().map(of).collect();
         let root = Member::root(scene);
-        let members = vec![Vec::new(); tables.len()];
+        let (members, owned) = (vec![Vec::new(); tables.len()], vec![0; tables.len()]);
         let (places, numbers) = (RowPlaces::of(root), Vec::new());
-        let mut writer = Self { scene, shapes, tables, members, errors: Vec::new(), places, numbers };
+        let mut writer = Self { scene, shapes, tables, members, owned, errors: Vec::new(), places, numbers };
         writer.own(0, [root]);
         writer
     }
@@ -101,13 +120,65 @@ impl<'a> Writer<'a> {
         members.reserve(owned.size_hint().0);
         rows.active.reserve(owned.size_hint().0);
         for member in owned {
+            let first = self.owned[child];
+            let end = first + member.rows(self.scene);
             if member.is_asked(self.scene) {
-                // At most limits::MAX_INSTANCES.
-                rows.active.push(members.len() as u32);
+                // At most limits::MAX_INSTANCES and limits::MAX_PARTICLES.
+                rows.active.extend(first as u32..end as u32);
             }
+            self.owned[child] = end;
             members.push(member);
         }
         rows.starts.push(rows.active.len() as u32);
+    }
+
+    /// Writes the rows of a run of particles. They are leaves that own no rows.
+    fn run(
+        &mut self,
+        table: usize,
+        recipe: &[RowStep],
+        (member, run): (Member, (InstanceId, &PointRun, u32)),
+        workers: &dyn Workers,
+    ) {
+        let (scene, rows) = (self.scene, &mut self.tables[table]);
+        let (count, stride) = (run.1.len(), rows.stride);
+        let columns = recipe.iter().filter_map(|step| match step {
+            RowStep::Columns(place, numbers) => Some((*place, numbers)),
+            RowStep::Slot(_) => None,
+            RowStep::Lead(_) | RowStep::Rows(..) => unreachable!("a point owns no rows"),
+        });
+        let columns: Vec<_> = columns.collect();
+        debug_assert!(columns.iter().all(|(place, _)| *place == RowPlace::ROW), "a point has no parts");
+        let slots = recipe.iter().filter(|step| matches!(step, RowStep::Slot(_))).count();
+        rows.nodes.extend(std::iter::repeat_n(member.node(scene).0, slots * count));
+        rows.count += count;
+        let before = rows.numbers.len();
+        if before == 0 {
+            // Zeros from the system are not touched before the workers do.
+            rows.numbers = vec![0.0; stride * count];
+        } else {
+            rows.numbers.resize(before + stride * count, 0.0);
+        }
+        let made = &mut rows.numbers[before..];
+        let bad = in_parts(workers, made, stride * ROWS_AT_ONCE, |first, part| {
+            let mut numbers = Vec::with_capacity(stride);
+            let mut bad = None;
+            for (row, out) in part.chunks_exact_mut(stride).enumerate() {
+                let member = Member::particle(run, first / stride + row);
+                numbers.clear();
+                columns.iter().for_each(|(_, push)| push(scene, member, &mut numbers));
+                let mut is_finite = true;
+                for (out, &number) in out.iter_mut().zip(&numbers) {
+                    *out = number as f32;
+                    is_finite &= out.is_finite();
+                }
+                if !is_finite && bad.is_none() {
+                    bad = Some((member, numbers.clone()));
+                }
+            }
+            bad
+        });
+        bad.into_iter().flatten().for_each(|(member, numbers)| self.complain(member, &numbers));
     }
 
     /// Writes the rows of a leaf's pieces.
@@ -143,7 +214,11 @@ impl<'a> Writer<'a> {
         let room = jbt_ir::limits::MAX_ERRORS - self.errors.len();
         for number in row.iter().filter(|number| !(**number as f32).is_finite()).take(room) {
             let node = self.scene.tree.node(member.node(self.scene));
-            let message = format!("a number derived from this part leaves the range of f32: {number:e}");
+            let part = match member.one_of(self.scene) {
+                Some((_, place)) => format!("particle {place}"),
+                None => "this part".to_owned(),
+            };
+            let message = format!("a number derived from {part} leaves the range of f32: {number:e}");
             let help = "the part is too small, too large or too far away once all transforms are applied";
             self.errors.push(Diagnostic::error(node.span, message).expected(help));
         }

@@ -26,7 +26,8 @@ use jbt_model::combine::ReduceCode;
 pub(super) struct RowGroup {
     /// Whether they are rows of a table; otherwise they are written out one after the other.
     pub(super) folded: bool,
-    /// Children, each with its place in the order of the file.
+    /// Children, each with its place in the order of the file; of a run of particles, that of the first of
+    /// the node.
     pub(super) members: Vec<(InstanceId, u32)>,
 }
 
@@ -342,7 +343,7 @@ impl<'a> Classifier<'a> {
                 | InstanceKind::Select { .. }
                 | InstanceKind::Difference { .. } => {
                     by_shape.entry(self.of(next).0).or_default().push((next, order));
-                    order += 1;
+                    order += self.scene.run(next).map_or(1, |run| run.places);
                 }
             }
         }

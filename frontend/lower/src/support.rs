@@ -31,22 +31,25 @@
 //! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are
 //! asked, [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
 
-use glam::{DAffine3, DMat3, DVec3};
+mod inverse;
+
+use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
+use self::inverse::{HALF_UNIT, Inverse, LinearFacts, absolute};
 use super::instance::{FieldId, InstanceId, InstanceKind, PositionId, Scene};
 use super::position::{MapKind, Position};
 use super::prune_info::{LARGEST_COORDINATE, Support};
-use jbt_model::affine::{Similarity, map_bounds};
+use super::rows::ROWS_AT_ONCE;
+use super::run::{LeafNumbers, PointRun};
+use super::workers::{Workers, in_parts};
+use jbt_model::affine::map_bounds;
 use jbt_model::bounds::Bounds;
 use jbt_model::check::NodeId;
 use jbt_model::combine::ReduceCode;
 use jbt_model::combine::extent::Extent;
-use jbt_model::kind::Primitive;
-use jbt_model::skeleton::{Metric, ROUNDING};
+use jbt_model::skeleton::{Metric, ROUNDING, Skeleton};
 
-/// Half a unit in the last place of 1 in f32.
-const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
 /// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are
 /// added.
 const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
@@ -80,6 +83,8 @@ impl Rounded {
 pub(super) struct Supports<'a> {
     scene: &'a Scene<'a>,
     fields: Vec<Rounded>,
+    /// Of runs of particles: each by itself, and where all of them can be negative.
+    runs: HashMap<FieldId, (Vec<Support>, Bounds)>,
     /// Of leaves whose pieces count near themselves only.
     pieces: HashMap<FieldId, Vec<Rounded>>,
     /// By instance.
@@ -88,19 +93,29 @@ pub(super) struct Supports<'a> {
 
 impl<'a> Supports<'a> {
     /// Finds them, children before parents.
-    pub(super) fn new(scene: &'a Scene<'a>) -> Self {
+    pub(super) fn new(scene: &'a Scene<'a>, workers: &dyn Workers) -> Self {
         let sizes = sizes(scene);
-        let mut pieces = HashMap::default();
+        let (mut pieces, mut runs) = (HashMap::default(), HashMap::default());
         let field = |index| {
             let id = FieldId(index as u32);
-            let leaf = Leaf::new(scene, id, &sizes);
-            if scene.field(id).code.skeleton.pieces().is_some_and(|pieces| pieces.local) {
+            if let Some(run) = &scene.field(id).run {
+                let (each, extent) = supports_of_run(scene, (id, run), &sizes, workers);
+                runs.insert(id, (each, extent.negative));
+                return Rounded { core: extent.support, radius: 0.0 };
+            }
+            let (field, skeleton) = (scene.field(id), &scene.primitive(id).skeleton);
+            let numbers = scene.leaf_numbers(id, 0);
+            let facts = LinearFacts::new(field.code.map, &field.map);
+            let space = sizes[scene.position(field.position).space.0 as usize];
+            let leaf = Leaf::new((skeleton, numbers), (field.map, field.scale, &facts), space);
+            if field.code.skeleton.pieces().is_some_and(|pieces| pieces.local) {
                 pieces.insert(id, leaf.pieces());
             }
             leaf.whole()
         };
         let fields = (0..scene.fields.len()).map(field).collect();
-        let mut supports = Self { scene, fields, pieces, extents: Vec::with_capacity(scene.instances.len()) };
+        let mut supports =
+            Self { scene, fields, runs, pieces, extents: Vec::with_capacity(scene.instances.len()) };
         for index in 0..scene.instances.len() {
             let extent = supports.find(InstanceId(index as u32));
             // Whatever is empty is empty in every direction, so that it adds nothing to a box around several.
@@ -130,6 +145,11 @@ impl<'a> Supports<'a> {
         Support::around(core, radius)
     }
 
+    /// The supports of a run's particles, which are asked for once.
+    pub(super) fn take_run(&mut self, id: FieldId) -> Vec<Support> {
+        self.runs.get_mut(&id).map(|(each, _)| std::mem::take(each)).unwrap_or_default()
+    }
+
     /// Where a piece of a leaf is near enough to count.
     pub(super) fn of_piece(&self, id: FieldId, piece: u32) -> Support {
         let piece = self.pieces.get(&id).map(|pieces| pieces[piece as usize]);
@@ -143,6 +163,9 @@ impl<'a> Supports<'a> {
         match &instance.kind {
             InstanceKind::Leaf { field, .. } => {
                 let support = self.fields[field.0 as usize].bounds();
+                if let Some(&(_, negative)) = self.runs.get(field) {
+                    return Extent { support, negative };
+                }
                 let signed = self.scene.primitive(*field).strength < 0.0;
                 Extent { support, negative: if signed { support } else { Bounds::EMPTY } }
             }
@@ -232,11 +255,16 @@ fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
         let of = |id: &InstanceId| slopes[id.0 as usize];
         let slope = match &instance.kind {
             InstanceKind::Leaf { field, .. } => {
-                let (leaf, primitive) = (scene.field(*field), scene.primitive(*field));
+                let leaf = scene.field(*field);
                 let rows = absolute(leaf.code.map.inverse(&leaf.map).matrix3) * DVec3::ONE;
-                let metric = primitive.skeleton.metric().steepness();
-                let slope = STEEPEST * primitive.strength.abs() * rows.max_element() * metric;
-                slope / (leaf.scale * primitive.radius)
+                let slope = |metric: f64, place: usize| {
+                    let LeafNumbers { radius, strength, .. } = scene.leaf_numbers(*field, place);
+                    STEEPEST * strength.abs() * rows.max_element() * metric / (leaf.scale * radius)
+                };
+                match &leaf.run {
+                    None => slope(scene.primitive(*field).skeleton.metric().steepness(), 0),
+                    Some(run) => (0..run.len()).map(|number| slope(1.0, run.place(number))).sum(),
+                }
             }
             // Behind a warp nothing is known, nor of formulas.
             InstanceKind::Warp { .. } | InstanceKind::Expression { .. } | InstanceKind::Map { .. } => {
@@ -265,40 +293,47 @@ impl Sizes {
     }
 }
 
-/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| +
-/// fixed`.
-struct Inverse {
-    back: DAffine3,
-    relative: DMat3,
-    fixed: DVec3,
-}
-
-impl Inverse {
-    fn new(kind: MapKind, map: &DAffine3) -> Self {
-        let back = kind.inverse(map);
-        if kind == MapKind::Identity {
-            return Self { back, relative: DMat3::ZERO, fixed: DVec3::ZERO };
+/// The supports of a run's particles, and where all of them are.
+fn supports_of_run(
+    scene: &Scene<'_>,
+    (id, run): (FieldId, &PointRun),
+    sizes: &[Sizes],
+    workers: &dyn Workers,
+) -> (Vec<Support>, Extent) {
+    let field = scene.field(id);
+    let particles = scene.particles(field.node);
+    let facts = LinearFacts::new(field.code.map, &field.map);
+    let space = sizes[scene.position(field.position).space.0 as usize];
+    let mut supports = vec![Support::EVERYWHERE; run.len()];
+    let nothing = Extent { support: Bounds::EMPTY, negative: Bounds::EMPTY };
+    let parts = in_parts(workers, &mut supports, ROWS_AT_ONCE, |first, part| {
+        let mut extent = nothing;
+        for (number, support) in (first..).zip(part) {
+            let place = run.place(number);
+            let skeleton = particles.point(place).into();
+            let map = scene.leaf_map(field, place);
+            let numbers = scene.leaf_numbers(id, place);
+            let rounded = Leaf::new((&skeleton, numbers), (map, field.scale, &facts), space).whole();
+            *support = Support::around(rounded.core, rounded.radius);
+            extent.support = extent.support.hull(rounded.bounds());
+            if numbers.strength < 0.0 {
+                extent.negative = extent.negative.hull(rounded.bounds());
+            }
         }
-        let rows = absolute(back.matrix3);
-        let units = 6.0 * HALF_UNIT;
-        let residual = back.matrix3 * map.matrix3 - DMat3::IDENTITY;
-        let shift = back.matrix3 * map.translation + back.translation;
-        let size = rows * map.translation.abs() + back.translation.abs();
-        Self {
-            back,
-            relative: units * (rows * absolute(map.matrix3)) + absolute(residual),
-            fixed: units * size + shift.abs() + 2f64.powi(-86),
-        }
-    }
-}
-
-fn absolute(matrix: DMat3) -> DMat3 {
-    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
+        extent
+    });
+    let both = |all: Extent, part: Extent| Extent {
+        support: all.support.hull(part.support),
+        negative: all.negative.hull(part.negative),
+    };
+    (supports, parts.into_iter().fold(nothing, both))
 }
 
 /// A leaf, and how far its field reaches from its skeleton.
 struct Leaf<'a> {
-    primitive: &'a Primitive,
+    skeleton: &'a Skeleton,
+    /// Of its support.
+    radius: f64,
     /// From the skeleton's own space to the one in which it is asked.
     map: DAffine3,
     /// How far, along each axis of that space; nothing, if that is not known.
@@ -314,19 +349,29 @@ enum Reach {
 }
 
 impl<'a> Leaf<'a> {
-    fn new(scene: &'a Scene<'_>, id: FieldId, sizes: &[Sizes]) -> Self {
-        let (field, primitive) = (scene.field(id), scene.primitive(id));
-        let (map, skeleton) = (&field.map, &primitive.skeleton);
-        let radius = field.scale * primitive.radius;
+    /// A skeleton with its numbers, under the map from its pose, in which it is so many times as large, in a
+    /// space of these sizes.
+    fn new(
+        (skeleton, numbers): (&'a Skeleton, LeafNumbers<'_>),
+        (map, scale, facts): (DAffine3, f64, &LinearFacts),
+        sizes: Sizes,
+    ) -> Self {
+        let map = &map;
+        let radius = scale * numbers.radius;
         let slope = radius.powi(-2);
-        let inverse = Inverse::new(field.code.map, map);
-        let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
+        let inverse = facts.inverse(map);
+        let unposed = match skeleton {
+            // Without an inverse, because there are many of them.
+            Skeleton::Point(point) => DAffine3::from_translation(-point.at),
+            posed => posed.pose().inverse(),
+        };
+        let to_pose = DAffine3::from_scale(DVec3::splat(scale)) * unposed;
         let pose = skeleton.bounds_under(&to_pose);
         let size = pose.min.abs().max(pose.max.abs());
         let whole = *map * to_pose;
 
-        let asked = sizes[scene.position(field.position).space.0 as usize].after(&inverse);
-        let factor = slope * primitive.strength.abs().max(1.0) * primitive.falloff.steepness();
+        let asked = sizes.after(&inverse);
+        let factor = slope * numbers.strength.abs().max(1.0) * numbers.falloff.steepness();
         let (metric, nearness) = (skeleton.metric(), radius.recip().max(1.0));
         let steepness = metric.steepness();
         // Terms of a norm have their weights, and the largest of them, as divisors.
@@ -346,7 +391,7 @@ impl<'a> Leaf<'a> {
         let part = steepness * (inverse.relative * metric.half()).length() + ROUNDING;
         // Written so that a NaN is no promise either.
         if !(small && part <= LARGEST_PART) {
-            return Self { primitive, map: whole, reach: None };
+            return Self { skeleton, radius: numbers.radius, map: whole, reach: None };
         }
         let lost = steepness * (inverse.relative * size + inverse.fixed).length()
             + ROUNDING * size.max_element()
@@ -354,29 +399,26 @@ impl<'a> Leaf<'a> {
         let reach = (radius * (1.0 + 4.0 * HALF_UNIT) + lost) / (1.0 - part);
 
         let own = skeleton.bounds();
-        let own = field.scale * own.min.abs().max(own.max.abs()).max_element();
-        let rows = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
+        let own = scale * own.min.abs().max(own.max.abs()).max_element();
         let slack = F64_SLACK
-            * (2.0 * rows.max_element() * (own + reach * metric.half().max_element())
+            * (2.0 * facts.longest * (own + reach * metric.half().max_element())
                 + map.translation.abs().max_element());
-        // A rigid map leaves distances alone.
-        let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
-        let reach = if rigid && metric == Metric::EUCLIDEAN {
+        let reach = if facts.rigid && metric == Metric::EUCLIDEAN {
             Reach::Round(slack, reach * (1.0 + 1e-10))
         } else {
             Reach::Axes(slack + reach * metric.reach(map.matrix3))
         };
-        Self { primitive, map: whole, reach: Some(reach) }
+        Self { skeleton, radius: numbers.radius, map: whole, reach: Some(reach) }
     }
 
     /// The support of the field.
     fn whole(&self) -> Rounded {
-        self.around(self.primitive.skeleton.bounds_under(&self.map))
+        self.around(self.skeleton.bounds_under(&self.map))
     }
 
     /// The support of each piece: where it is near enough to count.
     fn pieces(&self) -> Vec<Rounded> {
-        let pieces = self.primitive.skeleton.piece_bounds_under(self.primitive.radius, &self.map);
+        let pieces = self.skeleton.piece_bounds_under(self.radius, &self.map);
         pieces.into_iter().map(|piece| self.around(piece)).collect()
     }
 

@@ -60,6 +60,7 @@ mod argument;
 mod attribute;
 mod constructor;
 mod operator;
+mod particles;
 mod pattern;
 mod place;
 mod primitive;
@@ -70,6 +71,7 @@ use crate::written::{FieldNumber, Written, WrittenFalloff};
 
 use self::argument::{real, vector, vectors};
 pub use self::constructor::*;
+pub use self::particles::{particles, surface_particles};
 pub use self::pattern::Pattern;
 use self::primitive::leaf;
 pub use self::primitive::primitive;
@@ -104,11 +106,11 @@ impl Tree {
         self.map_written(|written| written.with_strength(strength.clone()))
     }
 
-    /// The same with every primitive written in another way.
+    /// The same with every primitive, and with particles, written in another way.
     fn map_written(&self, mut change: impl FnMut(Written) -> Written) -> Self {
         self.rewrite(|tree| {
             let written = tree.node().written();
-            written.is_primitive().then(|| tree.with_written(change(written.clone())))
+            written.falloff().map(|_| tree.with_written(change(written.clone())))
         })
     }
 
@@ -148,9 +150,9 @@ impl Tree {
         })
     }
 
-    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters
-    /// still. The change sees the present values, and the support radius that a surface radius gives at the
-    /// usual iso-value; a primitive that has no surface there stays as it is.
+    /// The same with every primitive changed; particles stay as they are. Numbers that the change leaves
+    /// alone follow their parameters still. The change sees the present values, and the support radius that a
+    /// surface radius gives at the usual iso-value; a primitive that has no surface there stays as it is.
     #[must_use]
     pub fn map_primitives(&self, mut change: impl FnMut(&mut Primitive)) -> Self {
         self.rewrite(|tree| {

@@ -49,6 +49,7 @@ mod numbers;
 mod order;
 mod owners;
 mod parameters;
+mod particles;
 mod place;
 mod tree;
 
@@ -117,6 +118,7 @@ impl Model {
             parameters,
             dependence,
             origin,
+            orientation: self.orientation,
             source,
             lineage: None,
         };

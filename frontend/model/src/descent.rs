@@ -16,6 +16,7 @@ use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive, chosen};
+use crate::particles::Particles;
 use crate::warp::Warp;
 
 /// A question that has an answer at each node.
@@ -38,6 +39,9 @@ pub(crate) trait Question {
 
     /// The answer of a leaf.
     fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Self::Way) -> Self::Answer;
+
+    /// The answer of particles, which is that of the sum of their points.
+    fn particles(&self, particles: &Particles, p: DVec3, way: &Self::Way) -> Self::Answer;
 
     /// The answer of an operator.
     fn combine(&self, combinator: Combinator, children: &[Self::Answer]) -> Self::Answer;
@@ -87,6 +91,7 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                 };
                 match &node.kind {
                     NodeKind::Primitive(leaf) => answers.push(question.primitive(leaf, p, &way)),
+                    NodeKind::Particles(these) => answers.push(question.particles(these, p, &way)),
                     NodeKind::Combine(_) | NodeKind::Expression(_) => {
                         tasks.push(DescentTask::Answer(id, p, way.clone()));
                         tasks.extend((0..node.children.len()).rev().map(|index| child(index, p, &way)));
@@ -128,6 +133,7 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                     NodeKind::Combine(combinator) => question.combine(*combinator, &children),
                     NodeKind::Expression(formula) => question.express(formula, p, &way, &children),
                     NodeKind::Primitive(_)
+                    | NodeKind::Particles(_)
                     | NodeKind::Select(_)
                     | NodeKind::Affine(_)
                     | NodeKind::Warp(_)

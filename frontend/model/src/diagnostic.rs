@@ -114,8 +114,17 @@ pub struct Source<'a> {
 
 /// The longest excerpt of a line that is shown, in characters.
 const EXCERPT: usize = 96;
+/// How many bytes tell whether a file is text.
+const BEGINNING: usize = 4096;
 
 impl Source<'_> {
+    /// Whether it has no lines: its first bytes have control characters that stand in no text, from 1 to 8.
+    /// Places in it are counted in bytes, from 0.
+    #[must_use]
+    pub fn is_binary(&self) -> bool {
+        self.text.iter().take(BEGINNING).any(|byte| (1..=8).contains(byte))
+    }
+
     /// Line and column of a byte, counted from 1. The column counts characters; bytes that are not UTF-8
     /// count one each.
     #[must_use]
@@ -146,8 +155,8 @@ impl Source<'_> {
         (0..byte).rev().find(|&at| self.ends_line(at)).map_or(0, |end| end + 1)
     }
 
-    /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file
-    /// are escaped.
+    /// The diagnostic as people read it: place, message, the line, a caret; in a file that is no text, the
+    /// byte and the message. Control characters of the file are escaped.
     #[must_use]
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
         self.render_from(1, diagnostic)
@@ -168,6 +177,13 @@ impl Source<'_> {
             self.render_notes(&mut out, first_line, diagnostic);
             return out;
         };
+        if self.is_binary() {
+            let _ = write!(out, "{}: byte {}: {severity}: {message}", escape(self.name), span.start);
+            if let Some(help) = &diagnostic.help {
+                let _ = write!(out, "\n  {}", escape(help));
+            }
+            return out;
+        }
         let (line, column) = self.position(span.start as usize);
         let line = first_line + line as u64 - 1;
         let _ = writeln!(out, "{}:{line}:{column}: {severity}: {message}", escape(self.name));
@@ -253,6 +269,14 @@ mod tests {
             shown,
             "a.jbt:2:10: error: bad \\u{1b}[2J\n  2 |   radius \\u{1b}[31m0\n    |          ^^^^^^^^^^^ a number"
         );
+    }
+
+    #[test]
+    fn places_in_files_without_lines_are_bytes() {
+        let source = Source { name: "a.g", text: b"v\x01\0\n\n5" };
+        let shown = source.render(&Diagnostic::error(Some(Span::new(4, 5)), "bad").expected("a number"));
+        assert_eq!(shown, "a.g: byte 4: error: bad\n  a number");
+        assert!(!Source { name: "a.blob", text: b"[Global]\0\r\n\t\x1b" }.is_binary());
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::attribute::AttributeValue;
 use crate::combine::Combinator;
 use crate::expression::Expression;
 use crate::falloff::Falloff;
+use crate::particles::Particles;
 use crate::skeleton::{Point, Skeleton};
 use crate::warp::Warp;
 
@@ -31,6 +32,8 @@ pub struct Primitive {
 pub enum NodeKind {
     /// A leaf.
     Primitive(Primitive),
+    /// The sum of any number of points.
+    Particles(Particles),
     /// Fields of the children become one field.
     Combine(Combinator),
     /// The field is a formula of the coordinates and of the children's fields: a leaf, if it has no children.
@@ -53,12 +56,14 @@ pub enum NodeKind {
 
 impl NodeKind {
     /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its
-    /// space.
+    /// space, and so have particles, but each about its own position.
     #[must_use]
     pub fn uv_skeleton(&self) -> &Skeleton {
         match self {
             Self::Primitive(primitive) => &primitive.skeleton,
-            Self::Combine(_)
+            // Each has its own place besides.
+            Self::Particles(_)
+            | Self::Combine(_)
             | Self::Expression(_)
             | Self::Select(_)
             | Self::Affine(_)
@@ -82,6 +87,7 @@ impl NodeKind {
                 Some([0, 1, 2].map(|row| columns.map(|column| column[row])))
             }
             Self::Primitive(_)
+            | Self::Particles(_)
             | Self::Combine(_)
             | Self::Expression(_)
             | Self::Select(_)
@@ -97,6 +103,7 @@ impl NodeKind {
         match self {
             Self::Select(which) => std::slice::from_ref(&children[chosen(*which)]),
             Self::Primitive(_)
+            | Self::Particles(_)
             | Self::Combine(_)
             | Self::Expression(_)
             | Self::Affine(_)

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::attribute::AttributeGroup;
 use crate::diagnostic::SourceText;
 use crate::number::Number;
+use crate::orientation::Orientation;
 use crate::parameter::{Parameter, collect};
 use crate::tree::{DEFAULT_ISO, Tree};
 
@@ -28,6 +29,8 @@ pub struct Model {
     pub origin: Option<[f64; 3]>,
     /// Comments in front of the statements of its text, which a printed text has again.
     pub comments: Comments,
+    /// How it stands: which axis points up, and the hand of its axes. Pictures and files ask for it.
+    pub orientation: Orientation,
 }
 
 /// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `param NAME`, `attribute
@@ -45,7 +48,9 @@ impl Model {
         let iso = Number::from(Self::DEFAULT_ISO);
         let (parameters, _) = collect(&[], &iso, &root);
         let attributes = vec![AttributeGroup::color()];
-        Self { iso, attributes, root, parameters, origin: None, source: None, comments: Comments::new() }
+        let orientation = Orientation::default();
+        let comments = Comments::new();
+        Self { iso, attributes, root, parameters, origin: None, orientation, source: None, comments }
     }
 
     /// The same with its local coordinates beginning at a point of the world: see [`origin`](crate::origin).
@@ -70,11 +75,12 @@ impl Model {
 impl PartialEq for Model {
     /// The same field, attributes and parameters; names, comments and places do not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, root, parameters, origin, source: _, comments: _ } = self;
+        let Self { iso, attributes, root, parameters, origin, orientation, source: _, comments: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *root == other.root
             && *parameters == other.parameters
             && *origin == other.origin
+            && *orientation == other.orientation
     }
 }

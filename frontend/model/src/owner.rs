@@ -16,11 +16,12 @@ use glam::DVec3;
 
 use crate::attribute::AttributeValue;
 use crate::check::{CheckedNode, CheckedTree, NodeId};
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Sum};
 use crate::descent::{Question, ask};
 use crate::diagnostic::Span;
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
+use crate::particles::Particles;
 use crate::warp::Warp;
 
 /// A leaf that decides, as one of its instances.
@@ -28,6 +29,8 @@ use crate::warp::Warp;
 pub struct Owner {
     /// The leaf.
     pub node: NodeId,
+    /// Which one of particles it is, if the node is that; else 0.
+    pub particle: usize,
     /// Where it stands in its source text.
     pub span: Option<Span>,
     /// Its part of the weight of the whole field, in (0, 1]. It is 1 unless fields are blended.
@@ -45,7 +48,17 @@ impl Owner {
         for &(node, child) in &self.above {
             let _ = write!(path, "{}.{child}/", word(tree.node(node)));
         }
-        path + word(tree.node(self.node))
+        let node = tree.node(self.node);
+        match &node.kind {
+            NodeKind::Particles(_) => format!("{path}{}.{}/point", word(node), self.particle),
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => path + word(node),
+        }
     }
 
     /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or of
@@ -78,6 +91,7 @@ fn word(node: &CheckedNode) -> &str {
     }
     match &node.kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
+        NodeKind::Particles(_) => "particles",
         NodeKind::Combine(combinator) => combinator.name(),
         NodeKind::Affine(_) => "affine",
         NodeKind::Warp(warp) => warp.name(),
@@ -99,9 +113,15 @@ struct PathStep {
 #[derive(Clone, Copy)]
 struct OwnerAnswer {
     field: f64,
-    /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has
-    /// weight.
-    leaf: Option<(u32, f64)>,
+    /// The leaf that decides, and its share of the weight here. Nobody decides where nothing has weight.
+    leaf: Option<(OwnerLeaf, f64)>,
+}
+
+/// A leaf by its step, and which one of particles it is.
+#[derive(Clone, Copy)]
+struct OwnerLeaf {
+    step: u32,
+    particle: u32,
 }
 
 /// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a
@@ -154,6 +174,24 @@ impl Question for Owners {
         OwnerAnswer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)
     }
 
+    fn particles(&self, particles: &Particles, p: DVec3, way: &OwnerWay) -> OwnerAnswer {
+        let answer = |particle: usize| {
+            let (at, radius) = (particles.at(particle), particles.radius(particle));
+            let s = (p - at).length_squared() / (radius * radius);
+            let field = particles.strength(particle) * particles.falloff().value(s);
+            // There are at most limits::MAX_PARTICLES.
+            OwnerAnswer::of(field, OwnerLeaf { step: way.step, particle: particle as u32 })
+        };
+        // Others have neither field nor weight.
+        let mut heard: Vec<OwnerAnswer> = (0..particles.len()).map(answer).collect();
+        heard.retain(|answer| answer.field != 0.0);
+        if heard.len() < particles.len() {
+            // One of several is weighed, as any number of them.
+            heard.push(OwnerAnswer { field: 0.0, leaf: None });
+        }
+        combine(Sum {}.into(), self.iso, &heard)
+    }
+
     fn combine(&self, combinator: Combinator, children: &[OwnerAnswer]) -> OwnerAnswer {
         combine(combinator, self.iso, children)
     }
@@ -183,7 +221,11 @@ impl Question for Owners {
 
 impl OwnerAnswer {
     fn of_leaf(field: f64, step: u32) -> Self {
-        Self { field, leaf: (field != 0.0).then_some((step, 1.0)) }
+        Self::of(field, OwnerLeaf { step, particle: 0 })
+    }
+
+    fn of(field: f64, leaf: OwnerLeaf) -> Self {
+        Self { field, leaf: (field != 0.0).then_some((leaf, 1.0)) }
     }
 }
 
@@ -208,7 +250,7 @@ fn express(expression: &Expression, p: DVec3, children: &[OwnerAnswer]) -> Owner
 }
 
 /// The leaf with the largest share of the weight.
-fn heaviest(children: &[OwnerAnswer], weights: &[f64]) -> Option<(u32, f64)> {
+fn heaviest(children: &[OwnerAnswer], weights: &[f64]) -> Option<(OwnerLeaf, f64)> {
     let total: f64 = weights.iter().sum();
     let mut best = None;
     let mut most = 0.0;
@@ -225,10 +267,10 @@ fn heaviest(children: &[OwnerAnswer], weights: &[f64]) -> Option<(u32, f64)> {
 }
 
 /// The way up from a leaf.
-fn describe(tree: &CheckedTree, steps: &[PathStep], leaf: u32, share: f64) -> Owner {
-    let node = steps[leaf as usize].node;
+fn describe(tree: &CheckedTree, steps: &[PathStep], leaf: OwnerLeaf, share: f64) -> Owner {
+    let node = steps[leaf.step as usize].node;
     let mut above = Vec::new();
-    let mut at = leaf;
+    let mut at = leaf.step;
     // The first step is the root's.
     while at != 0 {
         let step = &steps[at as usize];
@@ -236,5 +278,5 @@ fn describe(tree: &CheckedTree, steps: &[PathStep], leaf: u32, share: f64) -> Ow
         at = step.above;
     }
     above.reverse();
-    Owner { node, span: tree.node(node).span, share, above }
+    Owner { node, particle: leaf.particle as usize, span: tree.node(node).span, share, above }
 }

@@ -93,6 +93,21 @@ impl Term {
         Self(Arc::new(TermNode { kind: TermKind::Step(step), operands: operands.into_iter().collect() }))
     }
 
+    /// The value of any function; `operands` are as many as its [`arity`](Function::arity) allows.
+    ///
+    /// ```
+    /// use jbt_model::builder::{point, x, y, z};
+    /// use jbt_model::function::Function;
+    /// use jbt_model::term::Term;
+    /// let distance = Term::of_function(Function::Length, [x(), y(), z()]);
+    /// # let _ = distance;
+    /// ```
+    #[must_use]
+    pub fn of_function(function: Function, operands: impl IntoIterator<Item = Self>) -> Self {
+        let operands: Vec<Self> = operands.into_iter().collect();
+        Self::step(Step::Call(function, operands.len() as u32), operands)
+    }
+
     fn call<const N: usize>(function: Function, operands: [Self; N]) -> Self {
         Self::step(Step::Call(function, N as u32), operands)
     }
@@ -315,7 +330,8 @@ impl Tree {
     /// ```
     #[must_use]
     pub fn falloff_by(&self, formula: impl Fn(Term) -> Term) -> Self {
-        self.rewrite(|tree| {
+        // A formula is about one field, so each particle becomes a node.
+        self.as_points().rewrite(|tree| {
             let Written::Primitive { strength, .. } = tree.node().written() else { return None };
             let cone = tree.falloff(Falloff::Linear).strength(1.0);
             let field = formula(1.0 - cone.field());

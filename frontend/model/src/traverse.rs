@@ -137,7 +137,7 @@ mod tests {
             Written::Combine { .. } | Written::Expression(_) => 'a',
             Written::Attribute { .. } => 'b',
             Written::Map { .. } | Written::Warp { .. } | Written::FormulaWarp(_) | Written::Select(_) => 'c',
-            Written::Primitive { .. } => 'd',
+            Written::Primitive { .. } | Written::Particles(_) => 'd',
         };
         trees.map(letter).collect()
     }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! walk(node, p):   primitive    strength * falloff(d^2(p) / radius^2), with the attributes of the way down
+//!                  particles    each of them, and their sum
 //!                  combinator   walk each child at p; combine fields, mix attributes by weights
 //!                  expression   walk each child at p; the formula of p and their fields
 //!                  selector     walk the chosen child
@@ -19,10 +20,11 @@ use glam::DVec3;
 
 use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::{Combinator, OperatorForm, ReduceCode};
+use crate::combine::{Combinator, OperatorForm, ReduceCode, Sum};
 use crate::descent::{Question, ask};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
+use crate::particles::{ParticleValues, Particles};
 use crate::skeleton::Skeleton;
 use crate::warp::Warp;
 
@@ -118,6 +120,10 @@ impl Question for SampleQuestion<'_> {
         primitive(leaf, p, way)
     }
 
+    fn particles(&self, particles: &Particles, p: DVec3, way: &Way) -> SampleAnswer {
+        sum(self.tree, particles, p, (way, &self.defaults))
+    }
+
     fn combine(&self, combinator: Combinator, children: &[SampleAnswer]) -> SampleAnswer {
         combine(combinator, self.tree.iso(), children, &self.defaults)
     }
@@ -182,6 +188,44 @@ fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (GroupValues, f64) {
         Given::Uv(_) => skeleton.uv_kink_distance(p),
     };
     (way.iter().map(value).collect(), way.iter().map(jump).fold(f64::INFINITY, f64::min))
+}
+
+/// The sum of particles. Of those that are silent the first two are kept, which say what any number of them
+/// says, and the nearest rim.
+fn sum(
+    tree: &CheckedTree,
+    particles: &Particles,
+    p: DVec3,
+    (way, defaults): (&Way, &GroupValues),
+) -> SampleAnswer {
+    let mut answers = Vec::new();
+    let (mut silent, mut rim) = (0, f64::INFINITY);
+    let groups = tree.attributes().iter();
+    let own: Vec<_> = groups.map(|group| particles.values_of(&group.name)).collect();
+    for particle in 0..particles.len() {
+        let (skeleton, radius) = (particles.point(particle), particles.radius(particle));
+        let (falloff, strength) = (*particles.falloff(), particles.strength(particle));
+        let s = (p - skeleton.at).length_squared() / (radius * radius);
+        if s >= 1.0 || strength == 0.0 {
+            silent += 1;
+            if strength != 0.0 {
+                rim = rim.min((1.0 - s).abs());
+            }
+            if silent > 2 {
+                continue;
+            }
+        }
+        let given = |(values, above): (&Option<&ParticleValues>, &Given)| match values {
+            Some(values) => Given::Value(values.of(particle).collect(), f64::INFINITY),
+            None => above.clone(),
+        };
+        let way: Way = own.iter().zip(way.iter()).map(given).collect();
+        let leaf = Primitive { skeleton: skeleton.into(), falloff, radius, strength };
+        answers.push(primitive(&leaf, p, &way));
+    }
+    let mut answer = combine(Sum {}.into(), tree.iso(), &answers, defaults);
+    answer.kink_distance = answer.kink_distance.min(rim);
+    answer
 }
 
 fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> SampleAnswer {

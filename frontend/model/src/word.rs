@@ -10,7 +10,7 @@ pub const COORDINATES: [&str; 3] = ["x", "y", "z"];
 pub const FIELD: &str = "field";
 
 /// The words that begin a statement.
-const STATEMENTS: [&str; 6] = ["jbt", "iso", "origin", "param", "attribute", "let"];
+const STATEMENTS: [&str; 7] = ["jbt", "iso", "origin", "orientation", "param", "attribute", "let"];
 
 /// Whether a word begins a statement.
 pub fn is_statement(word: &str) -> bool {

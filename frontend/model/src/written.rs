@@ -12,7 +12,10 @@
 mod attribute;
 mod falloff;
 mod field;
+mod particles;
 mod plain;
+mod points;
+mod surface;
 
 use std::sync::Arc;
 
@@ -21,8 +24,7 @@ use glam::DAffine3;
 use crate::combine::CombinatorKind;
 use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
-use crate::falloff::Falloff;
-use crate::field::{FieldKind, FieldValue, plain};
+use crate::field::{FieldKind, FieldValue};
 use crate::kind::{NodeKind, Primitive};
 use crate::map::MapKind;
 use crate::number::{Number, ParameterValues, Step};
@@ -35,6 +37,9 @@ pub use attribute::{WrittenAttribute, WrittenTextured, WrittenUv};
 pub use falloff::WrittenFalloff;
 pub use field::FieldNumber;
 pub use field::as_written;
+pub use particles::{ParticleRadius, WrittenParticles};
+pub use points::WrittenPoint;
+use surface::support_radius;
 
 /// The radius of a primitive.
 #[derive(Clone, PartialEq, Debug)]
@@ -65,6 +70,8 @@ pub enum Written {
         /// The factor of the field.
         strength: Number,
     },
+    /// Any number of points, as arrays.
+    Particles(Box<WrittenParticles>),
     /// An operator.
     Combine {
         /// The kind.
@@ -123,6 +130,7 @@ impl Written {
             | Self::FormulaWarp(formula)
             | Self::Attribute { value: WrittenAttribute::Expressed(formula), .. } => Some(formula),
             Self::Primitive { .. }
+            | Self::Particles(_)
             | Self::Combine { .. }
             | Self::Select(_)
             | Self::Map { .. }
@@ -133,11 +141,12 @@ impl Written {
 
     /// All its numbers.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
-        let falloff = if let Self::Primitive { falloff, .. } = self { falloff.fields() } else { &[] };
+        let falloff = self.falloff().map_or(&[][..], WrittenFalloff::fields);
         let (fields, numbers, own): (&[FieldNumber], &[Number], [Option<&Number>; 2]) = match self {
             Self::Primitive { fields, radius, strength, .. } => {
                 (fields, &[], [Some(radius.number()), Some(strength)])
             }
+            Self::Particles(particles) => (&[], &[], particles.own_numbers()),
             Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
             Self::Attribute { .. } => (&[], &[], [None; 2]),
@@ -158,6 +167,7 @@ impl Written {
                 let fields = fields.iter_mut().chain(falloff.fields_mut());
                 fields.flat_map(FieldNumber::numbers_mut).chain(own).collect()
             }
+            Self::Particles(particles) => particles.numbers_mut().collect(),
             Self::Select(number) => vec![number],
             Self::Expression(formula) | Self::FormulaWarp(formula) => formula.numbers.iter_mut().collect(),
             Self::Combine { fields, .. } | Self::Map { fields, .. } | Self::Warp { fields, .. } => {
@@ -179,7 +189,17 @@ impl Written {
 
     /// Whether the node depends on the iso-value of its model.
     pub(crate) fn asks_iso(&self) -> bool {
-        matches!(self, Self::Primitive { radius: Radius::Surface(_), .. })
+        match self {
+            Self::Primitive { radius, .. } => matches!(radius, Radius::Surface(_)),
+            Self::Particles(particles) => matches!(particles.radius, ParticleRadius::Surface(_)),
+            Self::Combine { .. }
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Map { .. }
+            | Self::Warp { .. }
+            | Self::FormulaWarp(_)
+            | Self::Attribute { .. } => false,
+        }
     }
 
     /// Whether the iso-value of the model decides if its numbers can be.
@@ -219,6 +239,7 @@ impl Written {
                 let skeleton = skeleton.from_fields(&values(fields));
                 NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength })
             }
+            Self::Particles(particles) => NodeKind::Particles(particles.particles(iso)?),
             Self::Combine { combinator, fields } => {
                 let combinator = combinator.from_fields(&values(fields));
                 let depends = self.dependent_numbers().next().is_some();
@@ -259,6 +280,7 @@ impl Written {
             Self::Map { map, .. } if self.dependent_numbers().next().is_some() => map.freedom(),
             Self::Map { .. }
             | Self::Primitive { .. }
+            | Self::Particles(_)
             | Self::Combine { .. }
             | Self::Expression(_)
             | Self::Select(_)
@@ -301,28 +323,70 @@ impl Written {
         matches!(self, Self::Primitive { .. })
     }
 
-    /// Whether the strength of a primitive depends on a parameter.
+    /// The falloff of a primitive, or of particles.
+    pub(crate) fn falloff(&self) -> Option<&WrittenFalloff> {
+        match self {
+            Self::Primitive { falloff, .. } => Some(falloff),
+            Self::Particles(particles) => Some(&particles.falloff),
+            Self::Combine { .. }
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Map { .. }
+            | Self::Warp { .. }
+            | Self::FormulaWarp(_)
+            | Self::Attribute { .. } => None,
+        }
+    }
+
+    /// Whether the strength of a primitive, or that of all particles, depends on a parameter.
     pub fn strength_depends_on_parameters(&self) -> bool {
-        matches!(self, Self::Primitive { strength, .. } if strength.depends_on_parameters())
+        let strength = match self {
+            Self::Primitive { strength, .. } => Some(strength),
+            Self::Particles(particles) => particles.strength.all(),
+            Self::Combine { .. }
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Map { .. }
+            | Self::Warp { .. }
+            | Self::FormulaWarp(_)
+            | Self::Attribute { .. } => None,
+        };
+        strength.is_some_and(Number::depends_on_parameters)
     }
 
-    /// Whether a parameter of a primitive's falloff follows one of the model.
+    /// Whether a parameter of a primitive's falloff, or of that of particles, follows one of the model.
     pub fn falloff_depends_on_parameters(&self) -> bool {
-        matches!(self, Self::Primitive { falloff, .. } if falloff.depends_on_parameters())
+        self.falloff().is_some_and(WrittenFalloff::depends_on_parameters)
     }
 
-    /// The same with another strength, if it is a primitive.
+    /// The same with another strength, if it is a primitive, or particles.
     pub(crate) fn with_strength(mut self, new: Number) -> Self {
-        if let Self::Primitive { strength, .. } = &mut self {
-            *strength = new;
+        match &mut self {
+            Self::Primitive { strength, .. } => *strength = new,
+            Self::Particles(particles) => particles.strength = new.into(),
+            Self::Combine { .. }
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Map { .. }
+            | Self::Warp { .. }
+            | Self::FormulaWarp(_)
+            | Self::Attribute { .. } => {}
         }
         self
     }
 
-    /// The same with another falloff, if it is a primitive.
+    /// The same with another falloff, if it is a primitive, or particles.
     pub(crate) fn with_falloff(mut self, new: WrittenFalloff) -> Self {
-        if let Self::Primitive { falloff, .. } = &mut self {
-            *falloff = new;
+        match &mut self {
+            Self::Primitive { falloff, .. } => *falloff = new,
+            Self::Particles(particles) => particles.falloff = new,
+            Self::Combine { .. }
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Map { .. }
+            | Self::Warp { .. }
+            | Self::FormulaWarp(_)
+            | Self::Attribute { .. } => {}
         }
         self
     }
@@ -355,25 +419,4 @@ impl Written {
         let falloff = if new.falloff == old.falloff { falloff.clone() } else { new.falloff.into() };
         Self::Primitive { skeleton, fields, falloff, radius, strength }
     }
-}
-
-/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)`. Here s, the squared
-/// distance over the squared support radius, solves `falloff(s) = iso / strength`.
-fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
-    let level = iso / strength;
-    if radius.is_nan() || level.is_nan() {
-        return Ok(f64::NAN);
-    }
-    if radius <= 0.0 {
-        let message = format!("the surface radius is {}", plain(radius));
-        return Err(Fault { message, help: Some("expected a number above 0") });
-    }
-    if !(level > 0.0 && level < 1.0) {
-        let (iso, strength) = (plain(iso), plain(strength));
-        return Err(Fault {
-            message: format!("with strength {strength} the primitive has no surface at iso {iso}"),
-            help: Some("expected a strength above iso, or `radius`, the radius of the support"),
-        });
-    }
-    Ok(radius / falloff.inverse(level).sqrt())
 }

@@ -44,7 +44,7 @@ const NAMES: [(&str, &str); 16] = [
 const OTHERS: [&str; 8] = ["srgb", "rgb", "rgba", "hsl", "hsv", "hex", "rgbt", "colour"];
 
 /// From the number that a screen is given to linear light, both from 0 to 1 (IEC 61966-2-1).
-fn linear(screen: &Number) -> Number {
+pub(crate) fn linear(screen: &Number) -> Number {
     let is_bright = Number::of_step(Step::Call(Function::Step, 2), &[&0.04045.into(), screen]);
     let dark = screen / 12.92;
     let bright = ((screen.max(0.0) + 0.055) / 1.055).powf(2.4);

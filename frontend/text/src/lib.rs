@@ -19,6 +19,7 @@
 //! file       = "jbt" "1" { statement } ;                     exactly one statement is a node: the root
 //! statement  = "iso" expression                              before all nodes; 0.5 if not written
 //!            | "origin" vector                               where local coordinates begin; found by the check if not written
+//!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
 //!              [ "in" expression ".." expression [ "step" expression ] ] [ QUOTED ]    its range and its label
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
@@ -37,7 +38,7 @@
 //! test       = { "not" } expression [ ( "<" | "<=" | ">" | ">=" | "==" | "!=" ) expression ] ;
 //! item       = expression | vector | HEX | "srgb" vector | "[" { item [ "," ] } "]" | "use" NAME
 //!            | NAME { "[" expression "]" } ;                 a value with a name, or an element of it
-//! plain      = primitive | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
+//! plain      = primitive | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
 //! formula    = "expression" [ box ] "{" { NAME "=" expression "," } expression "}"
 //!            | box "{" node "}"                              the node's field, and 0 outside of the box
 //!            | "falloff" FALLOFF "radius" expression "{" node "}" ;   the node's field is a distance; what is negative is 0
@@ -48,6 +49,11 @@
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
 //!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]   soft if not written
 //!            | "strength" expression ;                       1 if not written
+//! particles  = "particles" "{" { parameter } "}" ;           the sum of points; in any order, each once:
+//!              "at" "(" { vector } ")"                        where they are
+//!            | ( "radius" | "surface_radius" | "strength" ) ( expression | "(" { number } ")" )     for all, or for each
+//!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]
+//!            | [ "with" ] NAME ( values | "(" { vector } ")" ) ;    of an attribute: for all, or for each
 //! operator   = "sum" | "product" | "union" | "intersection" | "difference" | "symmetric_difference"
 //!            | [ "blend" ] "ricci" expression                at least 1, or at most -1
 //!            | ( "smooth_union" | "smooth_intersection" | "smooth_difference" ) [ "width" ] expression
@@ -142,6 +148,7 @@ mod map;
 mod node;
 mod operator;
 mod parse;
+mod particles;
 mod primitive;
 mod print;
 mod program;

@@ -8,7 +8,7 @@ use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::program::Value;
 use super::state::Parser;
-use super::words::{GROUP_NODE, WEIGHTED, fixed_words};
+use super::words::{GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::map::MapKind;
@@ -147,6 +147,7 @@ impl<'a> Parser<'a> {
         }
         match word {
             "use" => Begun::Leaf(self.use_node()),
+            PARTICLES => Begun::Leaf(self.particles(start)),
             "select" => self.select(start),
             "warp" => self.formula_warp(start),
             "expression" => Begun::Leaf(self.expression_node(start)),

@@ -14,6 +14,7 @@ use jbt_model::attribute::{AttributeGroup, Mixing};
 use jbt_model::diagnostic::{Diagnostic, Span, escape};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, NumberFormula};
+use jbt_model::orientation::{Handed, ModelUp, Orientation};
 use jbt_model::parameter::{Fixture, Parameter, ParameterRange, not_finite, unknown};
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
@@ -173,6 +174,7 @@ impl<'a> Parser<'a> {
         match word {
             "iso" => self.iso_statement(span),
             "origin" => self.origin_statement(span),
+            "orientation" => self.orientation_statement(span),
             "param" => self.param_statement(),
             "attribute" => self.attribute_statement(),
             "let" => self.let_statement(),
@@ -222,6 +224,33 @@ impl<'a> Parser<'a> {
         }
         if self.origin.replace(numbers.map(|number| number.value())).is_some() {
             self.report(|| Diagnostic::error(Some(span), "a second `origin`").expected("expected it once"));
+        }
+    }
+
+    /// `up` and an axis, `handed` and a hand, either or both.
+    fn orientation_statement(&mut self, span: Span) {
+        let mut orientation = Orientation::default();
+        let at = self.peek();
+        let is_up = self.accept_word("up");
+        if is_up {
+            let found = ModelUp::ALL.into_iter().find(|up| self.accept_word(up.name()));
+            orientation.up = found.unwrap_or_else(|| {
+                self.expected_at(self.peek(), "expected `y` or `z`");
+                ModelUp::Z
+            });
+        }
+        if self.accept_word("handed") {
+            let found = Handed::ALL.into_iter().find(|hand| self.accept_word(hand.name()));
+            orientation.handed = found.unwrap_or_else(|| {
+                self.expected_at(self.peek(), "expected `right` or `left`");
+                Handed::Right
+            });
+        } else if !is_up {
+            self.expected_at(at, "expected `up` and an axis, or `handed` and a hand");
+        }
+        if self.orientation.replace(orientation).is_some() {
+            let error = Diagnostic::error(Some(span), "a second `orientation`");
+            self.report(|| error.expected("expected it once"));
         }
     }
 
@@ -461,6 +490,7 @@ impl<'a> Parser<'a> {
                     root,
                     parameters: self.parameters,
                     origin: self.origin,
+                    orientation: self.orientation.unwrap_or_default(),
                     source: None,
                     comments: self.comments,
                 };

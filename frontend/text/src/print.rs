@@ -8,7 +8,10 @@ use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
 use super::parse::ROOT;
-use super::words::{EXPRESSION, GROUP_NODE, WEIGHTED, field_word, texture_named};
+use super::particles::AT;
+use super::words::{
+    COMMON_FIELDS, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
+};
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{CombinatorKind, Syntax};
 use jbt_model::diagnostic::escape;
@@ -17,11 +20,14 @@ use jbt_model::falloff::FalloffKind;
 use jbt_model::field::{FieldKind, NumberText as _};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
+use jbt_model::orientation::Orientation;
 use jbt_model::parameter::{Parameter, ParameterRange};
+use jbt_model::particles::{NumberArray, ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
 use jbt_model::word::{is_identifier, is_statement};
 use jbt_model::written::{
-    FieldNumber, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenTextured, WrittenUv,
+    FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
+    WrittenTextured, WrittenUv,
 };
 
 /// Operators below this depth are printed on one line.
@@ -42,6 +48,11 @@ pub fn print(model: &Model) -> String {
     if let Some(point) = model.origin {
         comment(&mut out, model, "origin");
         let _ = writeln!(out, "origin {}", vector(point));
+    }
+    if model.orientation != Orientation::default() {
+        comment(&mut out, model, "orientation");
+        let Orientation { up, handed } = model.orientation;
+        let _ = writeln!(out, "orientation up {} handed {}", up.name(), handed.name());
     }
     for group in &model.attributes {
         if *group != AttributeGroup::color() {
@@ -228,7 +239,7 @@ impl Printer {
             written => head(out, written, &self.definitions),
         }
         match tree.node().written() {
-            Written::Primitive { .. } | Written::Expression(_) => {}
+            Written::Primitive { .. } | Written::Particles(_) | Written::Expression(_) => {}
             Written::Combine { .. } | Written::Select(_) => {
                 out.push_str(" {");
                 stack.push(Item::Text("}"));
@@ -284,8 +295,13 @@ fn head(out: &mut String, written: &Written, definitions: &str) {
                 Radius::Support(radius) => write!(out, " radius {radius}"),
                 Radius::Surface(radius) => write!(out, " surface_radius {radius}"),
             };
-            rest_of_primitive(out, falloff, strength);
+            falloff_of_leaf(out, falloff);
+            if strength.depends_on_parameters() || strength.value().to_bits() != 1f64.to_bits() {
+                let _ = write!(out, " strength {strength}");
+            }
+            out.push_str(" }");
         }
+        Written::Particles(written) => particles(out, written),
         Written::Combine { combinator, fields } => operator(out, *combinator, fields),
         Written::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
         Written::Select(which) => {
@@ -338,7 +354,7 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
 }
 
 fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    if super::words::is_reserved(name) {
+    if is_reserved(name) {
         let _ = write!(out, "{GROUP_NODE} ");
     }
     out.push_str(name);
@@ -385,13 +401,66 @@ fn same_numbers(a: &[Number], b: &[Number]) -> bool {
     a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
 }
 
-/// What follows a primitive's radius.
-fn rest_of_primitive(out: &mut String, falloff: &WrittenFalloff, strength: &Number) {
+/// The falloff of a primitive, or of particles.
+fn falloff_of_leaf(out: &mut String, falloff: &WrittenFalloff) {
     if falloff.kind() != FalloffKind::Soft {
         let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
     }
-    if strength.depends_on_parameters() || strength.value().to_bits() != 1f64.to_bits() {
-        let _ = write!(out, " strength {strength}");
+}
+
+/// Particles: all of the node.
+fn particles(out: &mut String, written: &WrittenParticles) {
+    let WrittenParticles { positions, radius, strength, falloff, values } = written;
+    let _ = write!(out, "{PARTICLES} {{");
+    match radius {
+        ParticleRadius::Support(radius) => per_particle(out, "radius", radius),
+        ParticleRadius::Surface(radius) => per_particle(out, "surface_radius", radius),
     }
+    falloff_of_leaf(out, falloff);
+    let is_one =
+        |number: &Number| !number.depends_on_parameters() && number.value().to_bits() == 1f64.to_bits();
+    if !strength.all().is_some_and(is_one) {
+        per_particle(out, "strength", strength);
+    }
+    for ParticleValues { name, width, numbers } in &**values {
+        let is_taken = is_reserved(name) || **name == *AT || COMMON_FIELDS.contains(&&**name);
+        let _ = if is_taken { write!(out, " {GROUP_NODE} {name} ") } else { write!(out, " {name} ") };
+        if numbers.len() == *width {
+            out.push_str(&group_values(numbers.iter()));
+        } else {
+            list(out, numbers, *width);
+        }
+    }
+    let _ = write!(out, " {AT} ");
+    list(out, positions, 3);
     out.push_str(" }");
+}
+
+fn per_particle(out: &mut String, word: &str, numbers: &PerParticle<Number>) {
+    let _ = match numbers {
+        PerParticle::All(number) => write!(out, " {word} {number}"),
+        PerParticle::Each(numbers) => write!(out, " {word} ").map(|()| list(out, numbers, 1)),
+    };
+}
+
+/// A list of numbers, or of vectors of so many numbers. A long one is broken into lines.
+fn list(out: &mut String, numbers: &NumberArray, width: usize) {
+    const NUMBERS_OF_A_LINE: usize = 12;
+    let in_a_line = (NUMBERS_OF_A_LINE / width).max(1);
+    out.push('(');
+    for first in (0..numbers.len()).step_by(width) {
+        if first > 0 {
+            out.push(if (first / width).is_multiple_of(in_a_line) { '\n' } else { ' ' });
+        }
+        if width == 1 {
+            out.push_str(&numbers.at(first).text());
+            continue;
+        }
+        for index in first..numbers.len().min(first + width) {
+            out.push(if index == first { '(' } else { ' ' });
+            out.push_str(&numbers.at(index).text());
+        }
+        out.push(')');
+    }
+    out.push(')');
 }

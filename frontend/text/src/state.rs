@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::files::Files;
 use super::hints::foreign_mark;
+use super::import::particles::ParticleOptions;
 use super::lex::{Lexer, Token, TokenKind};
 use super::program::{Program, Value};
 use super::scope::FormulaScope;
@@ -19,6 +20,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::label::Label;
 use jbt_model::model::{Comments, Model};
 use jbt_model::number::Number;
+use jbt_model::orientation::Orientation;
 use jbt_model::parameter::Parameter;
 use jbt_model::report::{Report, clip};
 use jbt_model::tree::Tree;
@@ -31,6 +33,10 @@ pub struct Options {
     pub parameters: Vec<(String, f64)>,
     /// How files are opened that the text names. By default none are.
     pub files: Files,
+    /// The object to read, of a file that holds several; those that nothing refers to without it.
+    pub object: Option<String>,
+    /// What is said of particles, of a file that holds some.
+    pub particles: ParticleOptions,
 }
 
 /// The state of reading one text.
@@ -56,6 +62,7 @@ pub(super) struct Parser<'a> {
     pub(super) origin: Option<[f64; 3]>,
     /// Of the scene's own text.
     pub(super) comments: Comments,
+    pub(super) orientation: Option<Orientation>,
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
     pub(super) root: Option<Tree>,
@@ -85,6 +92,7 @@ impl<'a> Parser<'a> {
             iso_at: None,
             origin: None,
             comments: Comments::new(),
+            orientation: None,
             nodes: 0,
             root: None,
             ended: false,

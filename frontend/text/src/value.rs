@@ -91,7 +91,7 @@ impl Parser<'_> {
     }
 
     /// Whether what is next belongs to what stands around a vector, so that its `)` must be missing.
-    fn vector_is_cut_off(&self) -> bool {
+    pub(super) fn vector_is_cut_off(&self) -> bool {
         let token = self.peek();
         let brace = token.is(b'{') || token.is(b'}');
         let field = self

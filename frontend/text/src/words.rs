@@ -34,9 +34,12 @@ pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str>
 /// The word for a formula.
 pub(super) const EXPRESSION: &str = "expression";
 
+/// The word for particles.
+pub(super) const PARTICLES: &str = "particles";
+
 /// The other words that begin a node.
-pub(super) const OTHERS: [&str; 8] =
-    ["use", "blend", "select", "expression", "within", "falloff", "warp", GROUP_NODE];
+pub(super) const OTHERS: [&str; 9] =
+    ["use", "blend", "select", "expression", "within", "falloff", "warp", PARTICLES, GROUP_NODE];
 
 /// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with`
 /// before it.

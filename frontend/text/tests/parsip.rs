@@ -82,10 +82,16 @@ fn scene(nodes: &[&str]) -> String {
 }
 
 fn read(nodes: &[&str]) -> Imported {
+    let imported = read_odd(nodes);
+    assert_eq!(imported.warnings.list(), [], "{nodes:?}");
+    imported
+}
+
+/// A scene that may have warnings.
+fn read_odd(nodes: &[&str]) -> Imported {
     let text = scene(nodes);
     let imported =
         parsip(text.as_bytes()).unwrap_or_else(|errors| panic!("{}", message(text.as_bytes(), &errors)));
-    assert_eq!(imported.warnings.list(), [], "{text}");
     imported.model.check().unwrap_or_else(|errors| panic!("{}", message(text.as_bytes(), &errors)));
     imported
 }
@@ -134,6 +140,78 @@ fn maps_scale_first_and_translate_last() {
     let scene = read(&[node]);
     near(field(&scene, [0.0, 1.0, 3.0]), at(0.25));
     near(field(&scene, [0.5, 0.0, 3.0]), at(0.25));
+}
+
+#[test]
+fn warps_ask_at_the_changed_point() {
+    let of = |warp: &str, p: [f64; 3]| {
+        let warp = format!("OperatorType={warp}; ChildrenCount=1; ChildrenIDs=(1)");
+        let leaf = "PrimitiveType=POINT; position=(0.2, 0.5, 0.3)";
+        let scene = read_odd(&[&warp, leaf]);
+        assert_reads_back(&scene.model);
+        field(&scene, p)
+    };
+    let asked = |q: [f64; 3]| at(DVec3::from(q).distance_squared(DVec3::new(0.2, 0.5, 0.3)));
+    let p = [0.3, 0.4, 0.25];
+    let [x, y, z] = p;
+    near(of("TAPER", p), asked([x, y, z * (1.0 + x)]));
+    near(of("TAPER; factor=-0.7; base axis=1; taper axis=0", p), asked([x * (1.0 - 0.7 * y), y, z]));
+    near(of("TAPER; factor=2; base axis=0; taper axis=0", p), asked([x, y * (1.0 + 2.0 * x), z]));
+    near(of("TAPER; factor=2; base axis=2; taper axis=2", p), asked([x * (1.0 + 2.0 * z), y, z]));
+    near(of("SHEAR", p), asked([x + z, y, z]));
+    near(of("SHEAR; factor=-0.5; base axis=2; shear axis=1", p), asked([x, y, z - 0.5 * y]));
+    near(of("BEND; rate=0", p), asked(p));
+    for (rate, center, left, right) in [(1.0, 0.5, 0.0, 1.0), (-2.0f64, 0.2, -0.5, 0.3)] {
+        let (across, up) = (y - center, z - 1.0 / rate);
+        let ends = [rate * (left - center), rate * (right - center)];
+        let turn = (rate.signum() * across).atan2(-rate.signum() * up);
+        let turn = turn.clamp(ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let (sin, cos) = turn.sin_cos();
+        let bent = [x, turn / rate + center + across * cos + up * sin, 1.0 / rate - across * sin + up * cos];
+        let bend = format!("BEND; rate={rate}; center={center}; left bound={left}; right bound={right}");
+        near(of(&bend, p), asked(bent));
+    }
+}
+
+#[test]
+fn where_parsip_does_something_else_a_warning_says_so() {
+    let warned = |node: &str| {
+        let scene = read_odd(&[node, "PrimitiveType=POINT"]);
+        scene.warnings.iter().map(|warning| warning.message.clone()).collect::<Vec<_>>().join("; ")
+    };
+    let warp = |name: &str| warned(&format!("OperatorType={name}; ChildrenCount=1; ChildrenIDs=(1)"));
+    assert!(warp("BEND").contains("ParsIP's own evaluator applies the bend"), "{}", warp("BEND"));
+    assert!(warp("TAPER; base axis=2; taper axis=1").contains("scales x"));
+    assert_eq!(warp("TAPER"), "");
+    assert_eq!(warp("SHEAR"), "");
+    let quadric = "PrimitiveType=QUADRICPOINT; radius=1";
+    assert!(!warned(quadric).contains("leaves out"));
+    assert!(warned(&format!("{quadric}; AffineScale=(2, 2, 2)")).contains("leaves out the map"));
+}
+
+#[test]
+fn a_quadric_point_has_a_radius_and_a_strength_of_its_own() {
+    let of = |node: &str, p: [f64; 3]| field(&read_odd(&[node]), p);
+    let node = "PrimitiveType=QUADRICPOINT; position=(1, 0, 0); radius=2; scale=0.8";
+    near(of(node, [2.0, 0.0, 0.0]), 0.8 * 0.75 * 0.75);
+    near(of(node, [1.0, 0.0, 2.1]), 0.0);
+    near(of("PrimitiveType=QUADRICPOINT; radius=1", [0.5, 0.0, 0.0]), 0.75 * 0.75);
+    // Its map counts.
+    near(of(&format!("{node}; AffineScale=(2, 2, 2)"), [4.0, 0.0, 0.0]), 0.8 * 0.75 * 0.75);
+}
+
+#[test]
+fn a_smooth_difference_is_a_product() {
+    let of = |list: &str, count: usize, p: [f64; 3]| {
+        let node = format!("OperatorType=SMOOTH DIFFERENCE; ChildrenCount={count}; ChildrenIDs={list}");
+        evaluate(&read_odd(&[&node, A, B]), p)
+    };
+    let p = [0.4, 0.0, 0.0];
+    let (a, b) = (at(0.16), at(0.36));
+    near(of("(1, 2)", 2, p).0, a * (1.0 - b));
+    near(of("(1, 2, 2)", 3, p).0, a * (1.0 - b) * (1.0 - b));
+    near(of("(1)", 1, p).0, a);
+    assert_eq!(of("(1, 2)", 2, p).1, [1.0, 0.0, 0.0]);
 }
 
 /// Two points at distance 1, a red and a blue one.
@@ -245,10 +323,10 @@ fn everything_wrong_has_its_place() {
     check("[Global", "[Global -> a heading without its `]`");
     one("PrimitiveType=SPHRE", "SPHRE -> no primitive is called SPHRE | known are POINT");
     one("PrimitiveType=PIONT", "PIONT -> no primitive is called PIONT | perhaps POINT");
-    one("PrimitiveType=QUADRICPOINT", "QUADRICPOINT -> QUADRICPOINT (a ball whose field");
-    for foreign in ["SMOOTH DIFFERENCE", "PCM", "TAPER", "SHEAR", "BEND"] {
-        let expected = format!("{foreign} -> {foreign} (");
-        one(&format!("OperatorType={foreign}; ChildrenCount=1; ChildrenIDs=(1)"), &expected);
+    one("PrimitiveType=QUADRICPOINT", "node 0 has no `radius`");
+    one("OperatorType=PCM; ChildrenCount=1; ChildrenIDs=(1)", "PCM -> PCM (contact of two bodies");
+    for warp in ["TAPER; base axis=3", "TAPER; taper axis=-1", "SHEAR; shear axis=x", "BEND; rate=fast"] {
+        one(&format!("OperatorType={warp}; ChildrenCount=1; ChildrenIDs=(1)"), " -> `");
     }
     one("OperatorType=MELT; ChildrenCount=1; ChildrenIDs=(1)", "MELT -> no operator is called MELT");
     one("AffineScale=(1, 0, 1); PrimitiveType=POINT", "(1, 0, 1) -> node 0 has a scale factor of zero");

@@ -14,11 +14,12 @@ use jbt_model::builder::point;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
+use jbt_model::orientation::{Handed, Orientation};
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
 use jbt_testkit::golden::{compare, files};
 use jbt_testkit::random::{Numbers, Random, Settings};
-use jbt_testkit::scene::assert_reads_back;
+use jbt_testkit::scene::{assert_reads_back, model};
 use jbt_text::{Options, parse, print};
 
 /// The golden files of errors, or the others.
@@ -465,5 +466,33 @@ fn escapes_of_the_file_do_not_reach_the_terminal() {
     let source = Source { name: "a.jbt", text };
     for error in parse(text, &Options::default()).unwrap_err() {
         assert!(!source.render(&error).contains(['\x1b', '\u{202e}']));
+    }
+}
+
+#[test]
+fn an_orientation_is_read_and_printed() {
+    let ball = "point { radius 1 }";
+    let orientation = |statement: &str| model(&format!("jbt 1 {statement} {ball}")).orientation;
+    assert_eq!(orientation(""), Orientation::default());
+    assert_eq!(orientation("orientation up y"), Orientation::Y_RIGHT);
+    assert_eq!(orientation("orientation up y handed left"), Orientation::Y_LEFT);
+    let left = Orientation { handed: Handed::Left, ..Orientation::default() };
+    assert_eq!(orientation("orientation handed left"), left);
+    for orientation in [Orientation::default(), Orientation::Y_LEFT, Orientation::Y_RIGHT, left] {
+        let plain = model(&format!("jbt 1 {ball}"));
+        let turned = Model { orientation, ..plain.clone() };
+        assert_eq!(turned == plain, orientation == Orientation::default());
+        assert_reads_back(&turned);
+        assert_eq!(turned.check().unwrap().orientation(), orientation);
+    }
+    for (statement, message) in [
+        ("orientation", "expected `up` and an axis, or `handed` and a hand"),
+        ("orientation up x", "expected `y` or `z`"),
+        ("orientation up y handed both", "expected `right` or `left`"),
+        ("orientation up y orientation up z", "a second `orientation`"),
+    ] {
+        let text = format!("jbt 1 {statement} {ball}");
+        let errors = parse(text.as_bytes(), &Options::default()).unwrap_err().to_string();
+        assert!(errors.contains(message), "{errors}");
     }
 }

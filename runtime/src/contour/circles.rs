@@ -36,6 +36,17 @@ pub fn circles(tree: &CheckedTree, plane: &Plane) -> Vec<([f64; 2], f64)> {
                 }
                 continue;
             }
+            NodeKind::Particles(particles) => {
+                if let Some(similarity) = Similarity::from_affine(&map) {
+                    let all = (0..particles.len()).filter_map(|particle| {
+                        let at = map.transform_point3(particles.at(particle)).to_array();
+                        circle(plane, at, similarity.scale() * particles.radius(particle))
+                    });
+                    let room = MOST - circles.len();
+                    circles.extend(all.take(room));
+                }
+                continue;
+            }
             NodeKind::Warp(_) | NodeKind::Expression(_) => continue,
             NodeKind::Affine(inner) => map * *inner,
             NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Attribute { .. } => map,

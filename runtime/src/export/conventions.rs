@@ -5,6 +5,8 @@ use std::fmt;
 use std::ops::Sub;
 use std::str::FromStr;
 
+use jbt_model::orientation::ModelUp;
+
 use crate::srgb;
 use crate::word::{UnknownWord, find};
 
@@ -26,8 +28,63 @@ pub struct Conventions {
     pub uv: Option<&'static str>,
     /// How it has other attributes, if it has any.
     pub attributes: Option<&'static str>,
+    /// How it has the name of a mesh, if it has.
+    pub name: Option<&'static str>,
     /// How it has the place of a mesh that is far from the origin of the world.
     pub far: FarMeshes,
+    /// The unit of lengths that a file states, unless [`ExportOptions::unit`](super::ExportOptions::unit)
+    /// says otherwise; `None` if it states none.
+    pub unit: Option<LengthUnit>,
+}
+
+/// What a unit of a scene is, in a file that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum LengthUnit {
+    /// 10^-6 m.
+    Micrometre,
+    /// 10^-3 m.
+    Millimetre,
+    /// 10^-2 m.
+    Centimetre,
+    /// 0.0254 m.
+    Inch,
+    /// 0.3048 m.
+    Foot,
+    /// The unit of SI.
+    Metre,
+}
+
+impl LengthUnit {
+    /// All, the smallest first.
+    pub const ALL: [Self; 6] =
+        [Self::Micrometre, Self::Millimetre, Self::Centimetre, Self::Inch, Self::Foot, Self::Metre];
+
+    /// The unit as a word: `um`, `mm`, `cm`, `in`, `ft` or `m`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Micrometre => "um",
+            Self::Millimetre => "mm",
+            Self::Centimetre => "cm",
+            Self::Inch => "in",
+            Self::Foot => "ft",
+            Self::Metre => "m",
+        }
+    }
+
+    /// How many metres it is.
+    #[must_use]
+    pub const fn metres(self) -> f64 {
+        match self {
+            Self::Micrometre => 1e-6,
+            Self::Millimetre => 1e-3,
+            Self::Centimetre => 1e-2,
+            Self::Inch => 0.0254,
+            Self::Foot => 0.3048,
+            Self::Metre => 1.0,
+        }
+    }
 }
 
 /// How a format has the place of a mesh with an [origin](crate::mesh::Mesh::origin) of its own.
@@ -63,14 +120,14 @@ pub struct Colors {
     pub encoding: ColorEncoding,
 }
 
-/// Which axis of a file points up. Models are z-up.
+/// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Up {
-    /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is
-    /// the file's +z.
+    /// A model with z up is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The
+    /// model's -y is the file's +z.
     Y,
-    /// As in the model.
+    /// As in a model with z up.
     Z,
 }
 
@@ -87,7 +144,7 @@ impl Up {
         }
     }
 
-    /// Where a point of the model, or a direction, is in a file.
+    /// Where a point of a model with z up, or a direction, is in a file.
     #[must_use]
     pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
@@ -137,15 +194,44 @@ impl ColorEncoding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileChoices<'a> {
     pub up: Up,
+    /// The axis of the model that points up.
+    pub model: ModelUp,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,
+    /// Any, where a file states no unit.
+    pub unit: LengthUnit,
     /// What the mesh is called, where the format has a place for it.
     pub name: Option<&'a str>,
+}
+
+impl FileChoices<'_> {
+    /// Where a point of the model, or a direction, is in the file.
+    pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        match (self.model, self.up) {
+            (ModelUp::Z, up) => up.place([x, y, z]),
+            (ModelUp::Y, Up::Y) => [x, y, z],
+            (ModelUp::Y, Up::Z) => [x, T::default() - z, y],
+        }
+    }
 }
 
 impl fmt::Display for Up {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
+    }
+}
+
+impl fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = UnknownWord;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWord> {
+        find(&LengthUnit::ALL, word)
     }
 }
 

@@ -5,9 +5,9 @@ use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use super::conventions::{ColorEncoding, Conventions, FileChoices, Up};
+use super::conventions::{ColorEncoding, Conventions, FileChoices, LengthUnit, Up};
 use super::parts::WriteError;
-use super::{glb, obj, ply, stl};
+use super::{glb, obj, ply, stl, three_mf, usda};
 use crate::mesh::Mesh;
 use crate::word::{UnknownWord, find};
 
@@ -51,6 +51,10 @@ formats! {
     Obj obj;
     /// Stereolithography, binary.
     Stl stl;
+    /// 3D Manufacturing Format, for printers.
+    ThreeMf three_mf;
+    /// Universal Scene Description, as text.
+    Usda usda;
 }
 
 impl Format {
@@ -84,8 +88,9 @@ pub struct ExportOptions {
     pub up: Option<Up>,
     /// What the numbers of colours mean. A format without colours does not care.
     pub colors: Option<ColorEncoding>,
-    /// What the mesh is called: the name of the node in a `.glb`, of the object in an `.obj`. Other formats
-    /// have no place for it.
+    /// What a unit of the scene is, in a format that says so.
+    pub unit: Option<LengthUnit>,
+    /// What the mesh is called, in a format that has a place for it: see [`Conventions::name`].
     pub name: Option<String>,
 }
 
@@ -101,12 +106,23 @@ impl ExportOptions {
     pub fn colors_in(&self, format: Format) -> Option<ColorEncoding> {
         format.conventions().colors.map(|colors| self.colors.unwrap_or(colors.encoding))
     }
+
+    /// The unit that a file of this format states, if it states any.
+    #[must_use]
+    pub fn unit_in(&self, format: Format) -> Option<LengthUnit> {
+        format.conventions().unit.map(|unit| self.unit.unwrap_or(unit))
+    }
 }
 
 impl<'a> FileChoices<'a> {
-    pub(super) fn new(format: Format, options: &'a ExportOptions) -> Self {
-        let colors = options.colors_in(format).unwrap_or(ColorEncoding::Linear);
-        Self { up: options.up_in(format), colors, name: options.name.as_deref() }
+    pub(super) fn new(mesh: &Mesh, format: Format, options: &'a ExportOptions) -> Self {
+        Self {
+            up: options.up_in(format),
+            model: mesh.orientation.up,
+            colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear),
+            unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
+            name: options.name.as_deref(),
+        }
     }
 }
 

@@ -19,6 +19,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
 
+use jbt_model::orientation::ModelUp;
 use serde_json::{Map, Value, json};
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
@@ -49,12 +50,14 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`COLOR_0`, 32-bit floats", encoding: ColorEncoding::Linear }),
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
+    name: Some("node and mesh"),
     far: FarMeshes::Node,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
-    let (mut json, binary) = describe(mesh, choices.up, &attributes);
+    let (mut json, binary) = describe(mesh, choices, &attributes);
     if let Some(name) = choices.name.filter(|_| binary > 0) {
         json["nodes"][0]["name"] = json!(name);
         json["meshes"][0]["name"] = json!(name);
@@ -157,7 +160,7 @@ impl BufferLayout {
 }
 
 /// The JSON text, and how many bytes the binary chunk has.
-fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
+fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
     let asset = json!({ "version": "2.0", "generator": "jbt" });
     if mesh.triangles.is_empty() {
         return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
@@ -190,7 +193,7 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u
         "asset": asset,
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [node(mesh, up)],
+        "nodes": [node(mesh, choices)],
         "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices }] }],
         "accessors": layout.accessors,
         "bufferViews": layout.views,
@@ -207,14 +210,16 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u
 
 /// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node
 /// turns it there, then moves it to its origin.
-fn node(mesh: &Mesh, up: Up) -> Value {
-    let mut node = match up {
-        // A quaternion (x, y, z, w): by -90 degrees about x.
-        Up::Y => json!({ "mesh": 0, "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2] }),
-        Up::Z => json!({ "mesh": 0 }),
+fn node(mesh: &Mesh, choices: FileChoices<'_>) -> Value {
+    // A quaternion (x, y, z, w): by 90 degrees about x, one way or the other.
+    let turned = |x: f64| json!({ "mesh": 0, "rotation": [x, 0.0, 0.0, FRAC_1_SQRT_2] });
+    let mut node = match (choices.model, choices.up) {
+        (ModelUp::Z, Up::Y) => turned(-FRAC_1_SQRT_2),
+        (ModelUp::Y, Up::Z) => turned(FRAC_1_SQRT_2),
+        (ModelUp::Z, Up::Z) | (ModelUp::Y, Up::Y) => json!({ "mesh": 0 }),
     };
     if !mesh.is_about_world() {
-        node["translation"] = json!(up.place(mesh.origin));
+        node["translation"] = json!(choices.place(mesh.origin));
     }
     node
 }

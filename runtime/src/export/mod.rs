@@ -1,4 +1,4 @@
-//! Mesh files: GLB, PLY, OBJ and STL; contours: SVG; pictures: PNG.
+//! Mesh files: GLB, PLY, OBJ, STL, 3MF and USDA; contours: SVG; pictures: PNG.
 //!
 //! [`Format::conventions`] says for each format of meshes which axis points up in its files, how its colours
 //! are written, and what it has room for; `docs/files.md` has the table, and what other programs make of it.
@@ -10,9 +10,9 @@
 //! anything; [`save`] writes a file under a temporary name and renames it, so that nobody ever sees half a
 //! file.
 //!
-//! A mesh may have an [origin](Mesh::origin) of its own. GLB has it in its node, and vertices as they are in
-//! the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
-//! [loses digits](loses_digits).
+//! A mesh may have an [origin](Mesh::origin) of its own. GLB, 3MF and USDA have it in a node, and vertices
+//! as they are in the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but
+//! rounded to f32, which [loses digits](loses_digits).
 
 mod atomic;
 mod conventions;
@@ -24,9 +24,12 @@ mod ply;
 mod png;
 mod stl;
 pub mod svg;
+mod three_mf;
+mod usda;
+mod zip;
 
 pub use atomic::AtomicFile;
-pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, Up};
+pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, LengthUnit, Up};
 pub use format::{ExportOptions, Format};
 pub use png::{PngEffort, write_png, write_png_with};
 
@@ -116,7 +119,8 @@ pub fn write_with(
     out: &mut impl Write,
 ) -> Result<(), ExportError> {
     check(mesh)?;
-    let choices = FileChoices::new(format, options);
+    let mesh = &*mesh.right_handed();
+    let choices = FileChoices::new(mesh, format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     format.write(mesh, choices, &mut out).map_err(|error| match error {
         WriteError::Write(error) => ExportError::Write(error),

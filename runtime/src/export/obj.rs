@@ -19,7 +19,9 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "behind the position, decimals", encoding: ColorEncoding::Srgb }),
     uv: Some("`vt`"),
     attributes: None,
+    name: Some("`o`"),
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
@@ -39,7 +41,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
         write_vertices(mesh, choices, |vertex| mesh.world(vertex), out)?;
     }
     write_items(out, mesh.normals.len(), |vertex, bytes| {
-        let [x, y, z] = up.place(mesh.normals[vertex]);
+        let [x, y, z] = choices.place(mesh.normals[vertex]);
         writeln!(bytes, "vn {x} {y} {z}")
     })?;
     let uvs = uvs(mesh);
@@ -62,13 +64,13 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    FileChoices { up, colors: encoding, .. }: FileChoices<'_>,
+    choices: FileChoices<'_>,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
-    let colors = colors(mesh);
+    let (colors, encoding) = (colors(mesh), choices.colors);
     write_items(out, mesh.positions.len(), |vertex, bytes| {
-        let [x, y, z] = up.place(position(vertex));
+        let [x, y, z] = choices.place(position(vertex));
         write!(bytes, "v {x} {y} {z}")?;
         if let Some(colors) = colors {
             let [r, g, b] = colors[vertex].map(|channel| encoding.encode(channel));

@@ -23,7 +23,9 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`red green blue`, 8 bits", encoding: ColorEncoding::Srgb }),
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
+    name: None,
     far: FarMeshes::Digits,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
@@ -56,12 +58,12 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
 
     write_items(out, mesh.positions.len(), |vertex, bytes| {
         if is_far {
-            let place = up.place(mesh.world(vertex));
+            let place = choices.place(mesh.world(vertex));
             place.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
         } else {
-            push_reals(bytes, up.place(mesh.positions[vertex]));
+            push_reals(bytes, choices.place(mesh.positions[vertex]));
         }
-        push_reals(bytes, up.place(mesh.normals[vertex]));
+        push_reals(bytes, choices.place(mesh.normals[vertex]));
         if let Some(colors) = colors {
             bytes.extend_from_slice(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))));
         }

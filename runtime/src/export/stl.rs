@@ -28,7 +28,9 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: None,
     uv: None,
     attributes: None,
+    name: None,
     far: FarMeshes::Rounded,
+    unit: None,
 };
 
 pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
@@ -40,9 +42,9 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
     out.write_all(&count.to_le_bytes())?;
     write_items(out, mesh.triangles.len(), |triangle, bytes| {
         let triangle = mesh.triangles[triangle];
-        let corners = triangle.map(|vertex| choices.up.place(mesh.positions[vertex as usize]));
+        let corners = triangle.map(|vertex| choices.place(mesh.positions[vertex as usize]));
         let normal = unit(area_vector(corners)).unwrap_or([0.0; 3]);
-        let rounded = |vertex: u32| choices.up.place(mesh.world(vertex as usize).map(|x| x as f32));
+        let rounded = |vertex: u32| choices.place(mesh.world(vertex as usize).map(|x| x as f32));
         push_reals(bytes, normal.into_iter().chain(triangle.map(rounded).into_iter().flatten()));
         // The attribute byte count, which has no agreed meaning.
         bytes.extend_from_slice(&[0, 0]);

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use jbt_model::orientation::{Handed, ModelUp, Orientation};
+
 use super::*;
 
 /// A tetrahedron with awkward colours and attributes.
@@ -14,6 +16,7 @@ fn tetrahedron() -> Mesh {
     let third = 1.0_f32 / 3.0;
     Mesh {
         origin: [0.0; 3],
+        orientation: Orientation::default(),
         positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]],
         normals: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         attributes: vec![
@@ -279,6 +282,19 @@ fn placed(options: &ExportOptions, format: Format) -> Vec<[f32; 3]> {
                 .map(|line| [0, 1, 2].map(|axis| line.split(' ').nth(axis).unwrap().parse().unwrap()))
                 .collect()
         }
+        Format::Usda => {
+            let text = String::from_utf8(file).unwrap();
+            assert!(text.contains(&format!("upAxis = \"{}\"", options.up_in(format).name().to_uppercase())));
+            let list = text.split_once("points = [").unwrap().1.split_once(']').unwrap().0;
+            let real = |word: &str| word.trim_matches(['(', ')', ' ', '\n']).parse::<f32>().unwrap();
+            list.split(',').map(real).collect::<Vec<f32>>().as_chunks().0.to_vec()
+        }
+        Format::ThreeMf => {
+            let text = three_mf_model(&file);
+            let lines = text.lines().filter_map(|line| line.strip_prefix("<vertex "));
+            let real = |line: &str, axis: usize| line.split('"').nth(2 * axis + 1).unwrap().parse().unwrap();
+            lines.map(|line| [0, 1, 2].map(|axis| real(line, axis))).collect()
+        }
         Format::Stl => {
             // The first corner of the first triangle, then the second of the second, and so on.
             let corner = |facet: usize, corner: usize| {
@@ -290,12 +306,94 @@ fn placed(options: &ExportOptions, format: Format) -> Vec<[f32; 3]> {
     }
 }
 
+/// The entries of an archive, by its list, with sizes and checksums compared.
+fn unzip(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let word = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+    let long = |at: usize| u32_at(bytes, at) as usize;
+    let end = bytes.len() - 22;
+    assert_eq!(&bytes[end..end + 4], b"PK\x05\x06");
+    let mut at = long(end + 16);
+    assert_eq!(at + long(end + 12), end);
+    let mut entries = Vec::new();
+    for _ in 0..word(end + 10) {
+        assert_eq!(&bytes[at..at + 4], b"PK\x01\x02");
+        let (checksum, packed, size, start) =
+            (u32_at(bytes, at + 16), long(at + 20), long(at + 24), long(at + 42));
+        let length = word(at + 28);
+        let name = String::from_utf8(bytes[at + 46..at + 46 + length].to_vec()).unwrap();
+        assert_eq!(&bytes[start..start + 4], b"PK\x03\x04");
+        let first = start + 30 + length;
+        let mut text = Vec::new();
+        let mut packer = flate2::read::DeflateDecoder::new(&bytes[first..first + packed]);
+        io::Read::read_to_end(&mut packer, &mut text).unwrap();
+        assert_eq!((text.len(), crc32fast::hash(&text)), (size, checksum), "{name}");
+        assert_eq!(&bytes[first + packed..first + packed + 4], b"PK\x07\x08");
+        assert_eq!(u32_at(bytes, first + packed + 4), checksum);
+        entries.push((name, text));
+        at += 46 + length;
+    }
+    entries
+}
+
+fn three_mf_model(bytes: &[u8]) -> String {
+    let entries = unzip(bytes);
+    let names: Vec<&str> = entries.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]);
+    String::from_utf8(entries[2].1.clone()).unwrap()
+}
+
+#[test]
+fn three_mf_has_each_colour_once() {
+    let text = three_mf_model(&bytes(&tetrahedron(), Format::ThreeMf));
+    assert!(text.contains("<model unit=\"millimeter\""));
+    let colors: Vec<&str> = text.lines().filter(|line| line.starts_with("<m:color ")).collect();
+    let hex = ["00BCFF", "00FF00", "7CAACB", "FFFFFF"];
+    assert_eq!(colors, hex.map(|hex| format!("<m:color color=\"#{hex}FF\"/>")));
+    let triangles: Vec<&str> = text.lines().filter(|line| line.starts_with("<triangle ")).collect();
+    assert_eq!(triangles[0], "<triangle v1=\"0\" v2=\"2\" v3=\"1\" pid=\"1\" p1=\"0\" p2=\"2\" p3=\"1\"/>");
+    assert!(text.contains("<item objectid=\"2\"/>"));
+    let far = Mesh { origin: [1e5, -2.5, 1e-9], attributes: Vec::new(), ..tetrahedron() };
+    let options = ExportOptions { unit: Some(LengthUnit::Inch), ..ExportOptions::default() };
+    let mut file = Vec::new();
+    write_with(&far, Format::ThreeMf, &options, &mut file).unwrap();
+    let text = three_mf_model(&file);
+    assert!(text.contains("unit=\"inch\"") && !text.contains("colorgroup") && !text.contains("pid"));
+    assert!(text.contains("transform=\"1 0 0 0 1 0 0 0 1 100000 -2.5 0.000000001\""));
+    let empty = three_mf_model(&bytes(&Mesh::default(), Format::ThreeMf));
+    assert!(empty.contains("<resources>\n</resources>\n<build/>"));
+}
+
+#[test]
+fn usda_has_everything() {
+    let text = String::from_utf8(bytes(&tetrahedron(), Format::Usda)).unwrap();
+    for part in [
+        "metersPerUnit = 1\n",
+        "int[] faceVertexCounts = [3, 3, 3, 3]\n",
+        "int[] faceVertexIndices = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3]\n",
+        "float3[] extent = [(0, 0, 0), (1, 1, 0.1)]",
+        "color3f[] primvars:displayColor = [(0, 0.5, 1), (0, 1, 0), (0.2, 0.4, 0.6), (1, 1, 1)]",
+        "float[] primvars:wear___tear = [0.25, -7, 0, 3]",
+        "float[] primvars:wear___tear_2 = [0, 1, 2, 3, 4, 5, 6, 7] (\n            elementSize = 2",
+        "float[] primvars:x_2 = [0.75, 0.75, 0.75, 0.75]",
+    ] {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+    let far = Mesh { origin: [1e5, -2.5, 1e-9], ..tetrahedron() };
+    let text = String::from_utf8(bytes(&far, Format::Usda)).unwrap();
+    assert!(text.contains("double3 xformOp:translate = (100000, -2.5, 0.000000001)"));
+    let empty = String::from_utf8(bytes(&Mesh::default(), Format::Usda)).unwrap();
+    assert!(empty.contains("point3f[] points = []"));
+}
+
 #[test]
 fn files_are_the_right_way_up() {
     let third = 1.0_f32 / 3.0;
     let z_up = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]];
     let y_up = vec![[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 0.0, -1.0], [-0.0, 1e-7, -third]];
-    let usual = [(Format::Glb, &y_up), (Format::Ply, &z_up), (Format::Obj, &y_up), (Format::Stl, &z_up)];
+    let usual = Format::ALL.map(|format| match format {
+        Format::Glb | Format::Obj => (format, &y_up),
+        Format::Ply | Format::Stl | Format::ThreeMf | Format::Usda => (format, &z_up),
+    });
     for (format, expected) in usual {
         assert_eq!(&placed(&ExportOptions::default(), format), expected, "{format}");
         for (up, expected) in [(Up::Y, &y_up), (Up::Z, &z_up)] {
@@ -309,6 +407,46 @@ fn files_are_the_right_way_up() {
     write_with(&tetrahedron(), Format::Stl, &options, &mut turned).unwrap();
     let ([x, y, z], turned) = (reals(&plain[84..96]).try_into().unwrap(), reals(&turned[84..96]));
     assert_eq!(turned, Up::Y.place([x, y, z]));
+}
+
+#[test]
+fn models_that_stand_otherwise_are_the_right_way_up_too() {
+    let y_right = Orientation { up: ModelUp::Y, handed: Handed::Right };
+    let mut mesh = Mesh { orientation: y_right, ..tetrahedron() };
+    let obj = |mesh: &Mesh, up: Up| {
+        let options = ExportOptions { up: Some(up), ..ExportOptions::default() };
+        let mut file = Vec::new();
+        write_with(mesh, Format::Obj, &options, &mut file).unwrap();
+        String::from_utf8(file).unwrap()
+    };
+    let lines = |text: &str, begin: &str| -> Vec<String> {
+        text.lines().filter_map(|line| line.strip_prefix(begin)).map(str::to_owned).collect()
+    };
+    let places = |text: &str| -> Vec<[f32; 3]> {
+        let numbers = |line: &String| {
+            let numbers: Vec<f32> = line.split(' ').take(3).map(|word| word.parse().unwrap()).collect();
+            [numbers[0], numbers[1], numbers[2]]
+        };
+        lines(text, "v ").iter().map(numbers).collect()
+    };
+    // As it is, where the file has y up as well; turned about x, where it has z up.
+    assert_eq!(places(&obj(&mesh, Up::Y)), mesh.positions);
+    let turned: Vec<[f32; 3]> = mesh.positions.iter().map(|[x, y, z]| [*x, 0.0 - z, *y]).collect();
+    assert_eq!(places(&obj(&mesh, Up::Z)), turned);
+    let (json, _) = parse_glb(&bytes(&mesh, Format::Glb));
+    assert!(json["nodes"][0]["rotation"].is_null());
+
+    // Left-handed axes are mirrored, and triangles turned around: a closed mesh has the same volume again.
+    mesh.orientation.handed = Handed::Left;
+    let file = obj(&mesh, Up::Y);
+    let mirrored: Vec<[f32; 3]> = mesh.positions.iter().map(|[x, y, z]| [*x, *y, 0.0 - z]).collect();
+    assert_eq!(places(&file), mirrored);
+    assert_eq!(lines(&file, "vn ")[3], "0 0 -1");
+    assert_eq!(lines(&file, "f ")[0], "1//1 2//2 3//3");
+    assert_eq!(lines(&obj(&tetrahedron(), Up::Y), "f ")[0], "1//1 3//3 2//2");
+    let right = mesh.right_handed();
+    assert_eq!((right.orientation, &right.attributes.len()), (y_right, &mesh.attributes.len()));
+    assert_eq!(right.right_handed().positions, right.positions);
 }
 
 #[test]

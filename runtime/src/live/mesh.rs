@@ -108,7 +108,8 @@ impl LiveMesh {
     fn start(compiled: &Compiled, settings: Polygonize, hook: Hook<'_>) -> Result<Self, PolygonizeError> {
         let lattice = settings.lattice(compiled.tree())?;
         let kernels = Kernels::new(compiled)?;
-        let mut mesh = BrickMesh::new(lattice.clone(), compiled.origin().point());
+        let mut mesh =
+            BrickMesh::new(lattice.clone(), compiled.origin().point(), compiled.tree().orientation());
         let options = settings.options(compiled.tree());
         let renewal = mesh.renewal(&kernels, &lattice, (&options, None), hook)?;
         mesh.commit(renewal);

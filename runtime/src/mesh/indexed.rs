@@ -1,5 +1,8 @@
 //! An indexed triangle mesh: the result of meshing.
 
+use std::borrow::Cow;
+
+use jbt_model::orientation::{Handed, Orientation};
 use jbt_model::origin::ModelOrigin;
 
 use crate::points::Points;
@@ -23,13 +26,16 @@ pub struct Mesh {
     /// The origin of positions, in the world: the model's origin, 0 for most models. A mesh of a field that
     /// is no model has the origin 0.
     pub origin: [f64; 3],
+    /// How the model stands whose coordinates these are: files show it the right way up.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub orientation: Orientation,
     /// One for each vertex, from the origin.
     pub positions: Vec<[f32; 3]>,
     /// One for each vertex, of length 1, away from the inside.
     pub normals: Vec<[f32; 3]>,
     /// Each has values for every vertex.
     pub attributes: Vec<Attribute>,
-    /// Three indices of vertices each, counter-clockwise when seen from outside.
+    /// Three indices of vertices each, counter-clockwise when seen from outside, in right-handed axes.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -42,6 +48,25 @@ impl Attribute {
 }
 
 impl Mesh {
+    /// The mirror image in right-handed axes of a mesh in left-handed ones; else the same.
+    #[must_use]
+    pub fn right_handed(&self) -> Cow<'_, Self> {
+        if self.orientation.handed == Handed::Right {
+            return Cow::Borrowed(self);
+        }
+        let mirrored =
+            |points: &[[f32; 3]]| points.iter().map(|&point| self.orientation.right_handed(point)).collect();
+        Cow::Owned(Self {
+            origin: self.orientation.right_handed(self.origin),
+            orientation: Orientation { handed: Handed::Right, ..self.orientation },
+            positions: mirrored(&self.positions),
+            normals: mirrored(&self.normals),
+            attributes: self.attributes.clone(),
+            // A mirror turns every triangle around.
+            triangles: self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
+        })
+    }
+
     /// The attribute of this name.
     #[must_use]
     pub fn attribute(&self, name: &str) -> Option<&Attribute> {

@@ -16,6 +16,7 @@ use std::ops::Range;
 
 use crate::parallel::*;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_model::orientation::Orientation;
 
 use super::brick::split;
 use super::error::MeshError;
@@ -59,6 +60,7 @@ pub(crate) fn finish<F: Field>(
         |(name, width): (String, usize)| Attribute { name, width, values: vec![0.0; width * count] };
     let mut mesh = Mesh {
         origin: [0.0; 3],
+        orientation: Orientation::default(),
         positions: vec![[0.0; 3]; count],
         normals: vec![[0.0; 3]; count],
         attributes: attributes.into_iter().map(attribute).collect(),

@@ -10,23 +10,17 @@
 //! A support exceeds the true support by more than the error of these few roundings (see
 //! `jbt_lower::prune_info::Support`).
 
+use std::sync::Arc;
+
 use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 use wide::f32x8;
 
 use crate::boxes::{Box3, MAX_PARTS};
 
-/// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
+/// The supports of a table's rows.
 #[derive(Clone)]
 pub(super) struct RowSupports {
-    rows: Vec<SupportRow>,
-}
-
-#[repr(align(32))]
-#[derive(Clone, Copy, PartialEq)]
-struct SupportRow {
-    low: [f32; 3],
-    high: [f32; 3],
-    radius_squared: f32,
+    rows: Arc<Vec<Support>>,
 }
 
 /// Up to eight boxes, by coordinates, a lane each.
@@ -66,21 +60,9 @@ impl Boxes {
     }
 }
 
-impl SupportRow {
-    fn new(support: &Support) -> Self {
-        let &Support { low, high, radius_squared } = support;
-        Self { low, high, radius_squared }
-    }
-}
-
 impl RowSupports {
-    pub(super) fn new(supports: &[Support]) -> Self {
-        Self { rows: supports.iter().map(SupportRow::new).collect() }
-    }
-
-    /// Gives a row another support.
-    pub(super) fn set(&mut self, row: usize, support: &Support) {
-        self.rows[row] = SupportRow::new(support);
+    pub(super) fn new(supports: &Arc<Vec<Support>>) -> Self {
+        Self { rows: Arc::clone(supports) }
     }
 
     /// The boxes that a row reaches, a bit each.
@@ -103,7 +85,7 @@ impl RowSupports {
     /// A box that meets every box that the row [`reach`](Self::reach)es, whatever `reach` rounds: squares of
     /// tiny gaps are 0.
     pub(super) fn reach_box(&self, row: u32) -> Box3 {
-        let SupportRow { low, high, radius_squared } = self.rows[row as usize];
+        let Support { low, high, radius_squared } = self.rows[row as usize];
         let radius = radius_squared.sqrt().max(1e-18) * (1.0 + 4.0 * f32::EPSILON);
         // A difference of infinities is NaN, and counts as reached.
         let side = |side: f32, open: f32| if side.is_nan() { open } else { side };
@@ -112,15 +94,14 @@ impl RowSupports {
             high: high.map(|high| side((high + radius).next_up(), f32::INFINITY)),
         }
     }
+}
 
-    /// The box around the support of a row, rounded outwards.
-    pub(super) fn bounds(&self, row: usize) -> Box3 {
-        let SupportRow { low, high, radius_squared } = self.rows[row];
-        let radius = radius_squared.sqrt().next_up();
-        Box3 {
-            low: low.map(|side| (side - radius).next_down()),
-            high: high.map(|side| (side + radius).next_up()),
-        }
+/// The box around a support, rounded outwards.
+pub(super) fn around(support: &Support) -> Box3 {
+    let radius = support.radius_squared.sqrt().next_up();
+    Box3 {
+        low: support.low.map(|side| (side - radius).next_down()),
+        high: support.high.map(|side| (side + radius).next_up()),
     }
 }
 
@@ -134,7 +115,7 @@ mod tests {
             high,
             radius_squared: radius * radius,
         };
-        RowSupports::new(&rows.iter().map(support).collect::<Vec<_>>())
+        RowSupports::new(&Arc::new(rows.iter().map(support).collect()))
     }
 
     #[test]

@@ -15,7 +15,7 @@ use jbt_ir::selection::Shift;
 use jbt_ir::{Rows, Table, Tables};
 use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
-use super::cull::RowSupports;
+use super::cull::around;
 use super::{Pruner, Region};
 use crate::boxes::{Box3, Divisible};
 use crate::divide::Edit;
@@ -182,7 +182,7 @@ impl Pruner {
             let info = &self.program.info.tables[table];
             let support = info.supports[row];
             if info.space == SupportSpace::World && support != Support::EVERYWHERE {
-                return Some(RowSupports::new(&[support]).bounds(0));
+                return Some(around(&support));
             }
             (table, row) = above;
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use jbt_ir::{Entity as _, Table, Tables};
+use jbt_ir::{Table, Tables};
 use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneInfo};
 
 use super::contest::Contests;
@@ -62,13 +62,11 @@ impl RangeProgram {
         tables: Tables,
         changed: &[(Table, usize, Support)],
     ) -> Self {
-        let (mut info, mut supports) = (self.info.clone(), self.supports.clone());
+        let mut info = self.info.clone();
         for &(table, row, support) in changed {
-            info.tables[table].supports[row] = support;
-            if let Some(supports) = &mut supports[table.index()] {
-                supports.set(row, &support);
-            }
+            Arc::make_mut(&mut info.tables[table].supports)[row] = support;
         }
+        let supports: Vec<Option<RowSupports>> = info.tables.values().map(supports).collect();
         let contests = Contests::new(compiler, &info, &tables);
         let bound = compiler.bind(&self.bound.kernel, tables);
         let rows = changed.iter().map(|&(table, row, _)| (table, row));

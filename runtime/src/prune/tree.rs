@@ -170,7 +170,7 @@ mod tests {
         let mut narrow = 0;
         for count in [1, 15, 16, 17, 128, 129, 1000, 5000] {
             let mut supports: Vec<Support> = (0..count).map(|_| support(&mut rng)).collect();
-            let mut rows = RowSupports::new(&supports);
+            let mut rows = RowSupports::new(&supports.clone().into());
             // Not all rows are active.
             let active: Vec<u32> = (0..count).filter(|row| count < 20 || row % 7 != 0).collect();
             let mut tree = RowTree::new(&rows, &active);
@@ -194,7 +194,7 @@ mod tests {
                     let position = rng.usize(0..active.len());
                     let row = active[position] as usize;
                     supports[row] = support(&mut rng);
-                    rows.set(row, &supports[row]);
+                    rows = RowSupports::new(&supports.clone().into());
                     tree.refit(position as u32, &rows, &active);
                 }
             }

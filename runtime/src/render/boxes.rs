@@ -1,5 +1,8 @@
 //! Boxes, eight at a time, and segments of rays that enter them.
 
+use super::vector::along;
+use crate::trace::Ray;
+
 /// Boxes of a node.
 pub const WIDE: usize = 8;
 /// A number for each of them.
@@ -20,6 +23,17 @@ pub struct RayPart {
     pub direction: [f32; 3],
     /// The length of the part.
     pub reach: f32,
+}
+
+impl RayPart {
+    /// The part of a ray in its span.
+    pub fn of(ray: &Ray) -> Self {
+        Self {
+            origin: along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32),
+            direction: ray.direction.map(|x| x as f32),
+            reach: (ray.span[1] - ray.span[0]) as f32,
+        }
+    }
 }
 
 /// A box: its smallest and its largest corner.

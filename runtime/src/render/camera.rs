@@ -9,12 +9,14 @@
 //!        o------- x  forward
 //! ```
 
+use jbt_model::orientation::{Handed, Orientation};
 use jbt_model::origin::ModelOrigin;
 
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
 use crate::error::{Classified, ErrorKind};
 
-/// The views with names, and the directions that they look from. A model faces along x, and z is up.
+/// The views with names, and the directions that they look from. A model with z up faces
+/// along x; see [`Orientation::direction`] for others.
 pub const VIEWS: [(&str, Vector); 8] = [
     ("three-quarter", THREE_QUARTER),
     ("iso", [1.0, -1.0, 1.0]),
@@ -33,6 +35,8 @@ const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
     /// It looks at the model from this direction, of any length, from where the model fills the picture.
+    /// It goes to the front, to the left and up: x, y and z of a model with z up, see
+    /// [`Orientation::direction`].
     From([f64; 3]),
     /// It stands at a point and looks at another point.
     At {
@@ -49,8 +53,8 @@ pub enum Stance {
 pub struct View {
     /// The place of the camera.
     pub stance: Stance,
-    /// The direction that is up in the picture, of any length. By default z, or y for a camera that looks
-    /// along z.
+    /// The direction that is up in the picture, of any length, in the axes of the model. By default what is
+    /// up for the model, z as a rule; for a camera that looks along that, what is behind, y as a rule.
     pub up: Option<[f64; 3]>,
     /// The angle from the bottom to the top of the picture, in degrees: greater than 0, less than 180.
     /// Without perspective it matters only for a camera that stands at a point: at its target, it sees as
@@ -165,7 +169,7 @@ impl View {
     /// # Errors
     /// See [`CameraError`].
     pub fn check(&self) -> Result<(), CameraError> {
-        self.basis()?;
+        self.basis(Orientation::default())?;
         for (what, value) in [("lens", self.lens), ("zoom", self.zoom)] {
             finite(what, &[value])?;
         }
@@ -187,17 +191,21 @@ impl View {
         Self { stance, ..*self }
     }
 
-    /// The direction that is up in space: the picture's up, if it was given, or z.
-    pub(super) fn upwards(&self) -> Vector {
-        self.up.and_then(unit).unwrap_or([0.0, 0.0, 1.0])
+    /// The direction that is up in space: the picture's up, if it was given, or the model's.
+    pub(super) fn upwards(&self, model: Orientation) -> Vector {
+        self.up.and_then(unit).unwrap_or_else(|| model.direction([0.0, 0.0, 1.0]))
     }
 
-    /// Right, up and back.
-    fn basis(&self) -> Result<[Vector; 3], CameraError> {
+    /// Right, up and back, in the axes of a model that stands so. In left-handed axes right is on the other
+    /// side of up and back.
+    fn basis(&self, model: Orientation) -> Result<[Vector; 3], CameraError> {
+        let hand = if model.handed == Handed::Left { -1.0 } else { 1.0 };
+        let right_of = |up: Vector, back: Vector| right_of(up, back).map(|right| scale(right, hand));
         let back = match self.stance {
             Stance::From(direction) => {
                 finite("direction", &direction)?;
-                unit(direction).ok_or(CameraError::Zero { what: "direction" })?
+                let direction = unit(direction).ok_or(CameraError::Zero { what: "direction" })?;
+                model.direction(direction)
             }
             Stance::At { eye, target } => {
                 finite("eye", &eye)?;
@@ -212,21 +220,26 @@ impl View {
                 let upwards = unit(up).ok_or(CameraError::Zero { what: "up" })?;
                 right_of(upwards, back).ok_or(CameraError::Up { up })?
             }
-            None => right_of([0.0, 0.0, 1.0], back)
-                .or_else(|| right_of([0.0, 1.0, 0.0], back))
+            None => right_of(model.direction([0.0, 0.0, 1.0]), back)
+                .or_else(|| right_of(model.direction([0.0, 1.0, 0.0]), back))
                 .expect("no direction is that of two axes"),
         };
-        Ok([right, cross(back, right), back])
+        Ok([right, scale(cross(back, right), hand), back])
     }
 
-    /// The camera for a picture whose width is `aspect` times its height. If it stands at no point, it frames
-    /// these points, of which there is at least one.
+    /// The camera for a picture whose width is `aspect` times its height, of a model that stands so. If it
+    /// stands at no point, it frames these points, of which there is at least one.
     ///
     /// # Errors
     /// See [`CameraError`].
-    pub(super) fn camera(&self, aspect: f64, points: &[Vector]) -> Result<Camera, CameraError> {
+    pub(super) fn camera(
+        &self,
+        aspect: f64,
+        points: &[Vector],
+        model: Orientation,
+    ) -> Result<Camera, CameraError> {
         self.check()?;
-        let [right, up, back] = self.basis()?;
+        let [right, up, back] = self.basis(model)?;
         let tangent = (0.5 * self.lens.to_radians()).tan();
         let lens = [tangent * aspect, tangent];
         let seen = Seen::new(points, [right, up, back]);
@@ -347,6 +360,8 @@ pub(super) fn is_usable(camera: &Camera) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use jbt_model::orientation::ModelUp;
+
     use super::*;
 
     fn cube() -> Vec<Vector> {
@@ -367,7 +382,7 @@ mod tests {
             for aspect in [0.5, 1.0, 2.0] {
                 for orthographic in [false, true] {
                     let view = View { orthographic, ..View::named(name).unwrap() };
-                    let camera = view.camera(aspect, &cube()).unwrap();
+                    let camera = view.camera(aspect, &cube(), Orientation::default()).unwrap();
                     let places: Vec<_> = cube().iter().map(|&corner| seen(&camera, corner)).collect();
                     let most = |axis: usize| {
                         places.iter().map(|place| (place[axis] - 0.5).abs()).fold(0.0, f64::max)
@@ -379,9 +394,29 @@ mod tests {
         }
     }
 
+    /// The front is seen with up above and left at the right, however the model stands.
+    #[test]
+    fn every_model_is_seen_upright() {
+        for up in ModelUp::ALL {
+            for handed in Handed::ALL {
+                let model = Orientation { up, handed };
+                let camera = View::named("front").unwrap().camera(1.5, &cube(), model).unwrap();
+                assert_eq!(camera.back, model.direction([1.0, 0.0, 0.0]), "{model:?}");
+                assert_eq!(camera.up, model.direction([0.0, 0.0, 1.0]), "{model:?}");
+                assert_eq!(camera.right, model.direction([0.0, 1.0, 0.0]), "{model:?}");
+                assert_eq!(View::default().upwards(model), camera.up);
+            }
+        }
+        // POV-Ray's usual camera: on -z, x to the right, y up.
+        let stance = Stance::At { eye: [0.0, 0.0, -5.0], target: [0.0; 3] };
+        let camera = View { stance, ..View::default() }.camera(1.0, &cube(), Orientation::Y_LEFT).unwrap();
+        assert_eq!((camera.right, camera.up), ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
+    }
+
     #[test]
     fn a_ray_goes_through_the_point_that_is_seen_there() {
-        let camera = View { zoom: 0.7, ..View::default() }.camera(1.5, &cube()).unwrap();
+        let camera =
+            View { zoom: 0.7, ..View::default() }.camera(1.5, &cube(), Orientation::default()).unwrap();
         let point = [0.3, -0.8, 0.9];
         let [x, y] = seen(&camera, point);
         let (origin, direction) = camera.ray(x, y);
@@ -391,9 +426,9 @@ mod tests {
 
     #[test]
     fn names_are_directions() {
-        let front = View::named("front").unwrap().camera(1.0, &cube()).unwrap();
+        let front = View::named("front").unwrap().camera(1.0, &cube(), Orientation::default()).unwrap();
         assert_eq!((front.back, front.up, front.right), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]));
-        let top = View::named("top").unwrap().camera(1.0, &cube()).unwrap();
+        let top = View::named("top").unwrap().camera(1.0, &cube(), Orientation::default()).unwrap();
         assert_eq!((top.back, top.up, top.right), ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
         assert_eq!(View::named("elsewhere"), None);
     }

@@ -1,6 +1,6 @@
 //! Colours: encoding for screens, and colour maps.
 
-pub(super) use crate::srgb::{byte, decode, encode, unit};
+pub(super) use crate::srgb::{ScreenBytes, byte, decode, unit};
 
 /// Red, green and blue.
 pub type Rgb = [f32; 3];

@@ -1,6 +1,6 @@
 //! Developing: from the sums of each pixel to colours.
 
-use super::color::{Rgb, byte, decode, encode, inferno, viridis};
+use super::color::{Rgb, ScreenBytes, byte, decode, inferno, viridis};
 use super::settings::{Background, FilmMeaning};
 use crate::parallel::*;
 use crate::picture::Picture;
@@ -23,12 +23,16 @@ pub fn develop(
         FilmMeaning::Number | FilmMeaning::Distance => range(film, |_| true),
         FilmMeaning::Cost => range(film, |cost| cost > 0.0),
     };
-    let row_of = |row: usize| -> Vec<[u8; 4]> {
-        let pixels = &film[row * width as usize..][..width as usize];
-        let behind = background.at((row as f32 + 0.5) / height as f32);
-        let develop = |&[red, green, blue, share]: &Gathered| {
+    let curve = (meaning == FilmMeaning::Light).then(ScreenBytes::new);
+    let mut rows: Vec<[u8; 4]> = vec![[0; 4]; film.len()];
+    let develop_row = |(row, (pixels, bytes)): (usize, (&[Gathered], &mut [[u8; 4]]))| {
+        let behind = Behind::new(background.at((row as f32 + 0.5) / height as f32), curve.as_ref());
+        for (&[red, green, blue, share], bytes) in pixels.iter().zip(bytes) {
+            if share == 0.0 {
+                *bytes = behind.bytes;
+                continue;
+            }
             let front = match (meaning, range) {
-                _ if share == 0.0 => [0.0; 3],
                 (FilmMeaning::Light | FilmMeaning::Screen, _) => [red, green, blue],
                 (FilmMeaning::Number | FilmMeaning::Distance | FilmMeaning::Cost, None) => [0.0; 3],
                 (FilmMeaning::Number, Some(range)) => viridis(part(red / share, range)).map(|x| x * share),
@@ -37,12 +41,12 @@ pub fn develop(
                     inferno(part((red / share).ln(), range.map(f32::ln))).map(|x| x * share)
                 }
             };
-            over(front, share, behind, meaning == FilmMeaning::Light)
-        };
-        pixels.iter().map(develop).collect()
+            *bytes = behind.under(front, share);
+        }
     };
-    let rows: Vec<Vec<[u8; 4]>> = (0..height as usize).into_par_iter().map(row_of).collect();
-    (Picture::new(width, height, rows.concat()).expect("a film has a pixel at least"), range)
+    let width = width as usize;
+    film.par_chunks(width).zip(rows.par_chunks_mut(width)).enumerate().for_each(develop_row);
+    (Picture::new(width as u32, height, rows).expect("a film has a pixel at least"), range)
 }
 
 /// The range of the numbers of a film that count.
@@ -57,24 +61,36 @@ fn part(number: f32, [low, high]: [f32; 2]) -> f32 {
     if high > low { (number - low) / (high - low) } else { 0.0 }
 }
 
-/// A pixel in front of a background, as bytes. The front is premultiplied by its opacity; light is mixed
-/// linearly.
-fn over(front: Rgb, opacity: f32, behind: Option<Rgb>, is_light: bool) -> [u8; 4] {
-    let show = |x: f32| byte(if is_light { encode(x) } else { x });
-    match behind {
-        Some(behind) => {
-            let mix = |channel: usize| {
-                let back = behind[channel];
-                front[channel] + (1.0 - opacity) * if is_light { decode(back) } else { back }
-            };
-            let [red, green, blue] = [0, 1, 2].map(|channel| show(mix(channel)));
-            [red, green, blue, 255]
+/// What is behind the pixels of a row. Light is mixed linearly.
+struct Behind<'a> {
+    /// `None` where pixels stay transparent.
+    color: Option<Rgb>,
+    /// Of a pixel with nothing in front.
+    bytes: [u8; 4],
+    curve: Option<&'a ScreenBytes>,
+}
+
+impl<'a> Behind<'a> {
+    /// The background of a row as screen values; with a curve, pixels are light.
+    fn new(screen: Option<Rgb>, curve: Option<&'a ScreenBytes>) -> Self {
+        let color = screen.map(|screen| if curve.is_some() { screen.map(decode) } else { screen });
+        let mut behind = Self { color, bytes: [0; 4], curve };
+        if color.is_some() {
+            behind.bytes = behind.under([0.0; 3], 0.0);
         }
-        None if opacity > 0.0 => {
-            let [red, green, blue] = front.map(|x| show(x / opacity));
-            [red, green, blue, byte(opacity)]
-        }
-        None => [0; 4],
+        behind
+    }
+
+    /// A pixel, as bytes. The front is premultiplied by its opacity, which is more than 0 where nothing is
+    /// behind.
+    fn under(&self, front: Rgb, opacity: f32) -> [u8; 4] {
+        let show = |x: f32| self.curve.map_or_else(|| byte(x), |curve| curve.of(x));
+        let (mixed, alpha) = match self.color {
+            Some(color) => ([0, 1, 2].map(|channel| front[channel] + (1.0 - opacity) * color[channel]), 1.0),
+            None => (front.map(|x| x / opacity), opacity),
+        };
+        let [red, green, blue] = mixed.map(show);
+        [red, green, blue, byte(alpha)]
     }
 }
 

@@ -23,6 +23,10 @@ const COARSE: f32 = 1.0 / 8.0;
 const CUT_POINTS: u32 = 32;
 /// The number of rays along the longer side of the coarse picture that shows how the model fills a view.
 const SCOUTS: u32 = 96;
+/// Triangles of the mesh of a draft for each pixel of the picture, beyond which its cells are larger, and how
+/// much larger at most.
+const DRAFT_TRIANGLES: f64 = 0.25;
+const DRAFT_COARSER: f64 = 2.0;
 /// The nearest distance at which a pixel's size is measured, as a part of the model's radius.
 const NEAREST: f64 = 0.02;
 /// The resolution of f32, as a part of the size of coordinates.
@@ -41,9 +45,9 @@ impl<'a> Frame<'a> {
         let Some(bounds) = tight.outer else { return Ok(None) };
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
-        let up = render.view.upwards();
+        let up = render.view.upwards(renderer.tree().orientation());
         let view = render.view.about(renderer.tree().origin());
-        let camera = view.camera(render.aspect(), &corners)?;
+        let camera = view.camera(render.aspect(), &corners, renderer.tree().orientation())?;
         let mut frame = Self {
             render,
             renderer,
@@ -68,14 +72,24 @@ impl<'a> Frame<'a> {
         let places = coarse.as_ref().map(|coarse| frame.places(coarse, &tight)).transpose()?.flatten();
         if is_framed {
             match &places {
-                Some(places) => frame.camera = frame.view.camera(render.aspect(), places)?,
+                Some(places) => {
+                    frame.camera =
+                        frame.view.camera(render.aspect(), places, renderer.tree().orientation())?;
+                }
                 None => frame.fit(&corners)?,
             }
         }
-        frame.set_tolerance(render.size[1], render.view.zoom)?;
+        // The mesh may be a cell away from the surface.
+        let nearest = coarse.as_ref().zip(places.as_ref()).map(|(coarse, places)| {
+            let depths = places.iter().map(|&place| frame.camera.depth(place));
+            depths.fold(f64::INFINITY, f64::min) - coarse.cell
+        });
+        frame.set_tolerance(render.size[1], render.view.zoom, nearest)?;
         if let Some(coarse) = coarse.filter(|_| frame.is_guided()) {
-            let cell = render.quality.cell() * frame.pixel;
-            frame.guide = Guide::new(renderer, (&bounds, &coarse), cell, up, &mut |part| telling.tell(part))?;
+            let cell = frame.guide_cell(&coarse);
+            let is_lit = render.quality != Quality::Draft && render.mode == RenderMode::Shaded;
+            frame.guide =
+                Guide::new(renderer, (&bounds, &coarse), cell, (up, is_lit), &mut |part| telling.tell(part))?;
         }
         if frame.may_have_ground() {
             let lowest = match (&frame.guide, &places) {
@@ -88,6 +102,16 @@ impl<'a> Frame<'a> {
         }
         frame.check_eye()?;
         Ok(Some(frame))
+    }
+
+    /// The edge of the cells of the mesh that guides rays.
+    fn guide_cell(&self, coarse: &CoarseMesh) -> f64 {
+        let cell = self.render.quality.cell() * self.pixel;
+        if self.render.quality != Quality::Draft {
+            return cell;
+        }
+        let pixels = self.render.size.map(f64::from).iter().product::<f64>();
+        coarse.cell_for(DRAFT_TRIANGLES * pixels).clamp(cell, DRAFT_COARSER * cell)
     }
 
     /// Whether a mesh guides the rays of the picture.
@@ -186,8 +210,8 @@ impl<'a> Frame<'a> {
     /// the whole model.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
         let view = View { zoom: 1.0, ..self.view };
-        self.camera = view.camera(self.render.aspect(), corners)?;
-        self.set_tolerance(SCOUTS, 1.0)?;
+        self.camera = view.camera(self.render.aspect(), corners, self.renderer.tree().orientation())?;
+        self.set_tolerance(SCOUTS, 1.0, None)?;
         let aspect = self.render.aspect();
         let [columns, rows] = [aspect.min(1.0), (1.0 / aspect).min(1.0)]
             .map(|part| ((f64::from(SCOUTS) * part).round() as u32).max(8));
@@ -204,19 +228,21 @@ impl<'a> Frame<'a> {
         let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
         let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
-        self.camera = self.view.camera(aspect, points)?;
+        self.camera = self.view.camera(aspect, points, self.renderer.tree().orientation())?;
         Ok(())
     }
 
-    /// Sets the size of a pixel at the near side of the model, and the tolerance for it.
-    fn set_tolerance(&mut self, rows: u32, zoom: f64) -> Result<(), RenderError> {
+    /// Sets the size of a pixel at the near side of the model, and the tolerance for it. Where nobody knows
+    /// the depth of the near side, it is that of the sphere around the model's bounds.
+    fn set_tolerance(&mut self, rows: u32, zoom: f64, nearest: Option<f64>) -> Result<(), RenderError> {
         if !is_usable(&self.camera) {
             return Err(RenderError::Unusable);
         }
         let distance = if self.camera.orthographic {
             1.0
         } else {
-            (self.camera.depth(self.middle) - self.radius).max(NEAREST * self.radius / zoom.max(1.0))
+            let sphere = self.camera.depth(self.middle) - self.radius;
+            nearest.unwrap_or(sphere).max(sphere).max(NEAREST * self.radius / zoom.max(1.0))
         };
         self.pixel = 2.0 * self.camera.half[1] * distance / f64::from(rows);
         let size =

@@ -13,7 +13,6 @@ use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::lights::{KEY_SPREAD, sky, sky_above};
-use super::look::segment;
 use super::noise::{Sequence, above, around};
 use super::report::Rays;
 use super::vector::{Vector, along, dot};
@@ -206,15 +205,16 @@ fn blocked(
 ) -> Result<Vec<bool>, RenderError> {
     let mut asked: Vec<(usize, Ray)> =
         rays.iter().enumerate().filter_map(|(at, ray)| ray.map(|ray| (at, ray))).collect();
-    if frame.guide.is_none() {
+    let lit = frame.guide.as_ref().and_then(|guide| Some((guide.hierarchy.as_ref()?, guide.cell)));
+    if lit.is_none() {
         asked.sort_by_key(|(_, ray)| way(ray));
     }
     let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
     *count += some.len() as u64;
-    let found = match &frame.guide {
-        Some(guide) => {
-            let segments: Vec<RayPart> = some.iter().map(segment).collect();
-            guide.hierarchy.any_of(&segments, (BURIED * guide.cell) as f32)
+    let found = match lit {
+        Some((hierarchy, cell)) => {
+            let segments: Vec<RayPart> = some.iter().map(RayPart::of).collect();
+            hierarchy.any_of(&segments, (BURIED * cell) as f32)
         }
         None => {
             let found = frame.renderer.tracer.any_of_local(&some, frame.light_tolerance())?;

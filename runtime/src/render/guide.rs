@@ -37,14 +37,15 @@ pub struct CoarseMesh {
 
 /// A mesh that rays meet in place of the surface.
 pub struct Guide {
-    pub hierarchy: Hierarchy,
+    pub mesh: Mesh,
+    /// What light meets; `None` where a picture has no other light than what reaches everything.
+    pub hierarchy: Option<Hierarchy>,
     /// Whether it is fine enough to lead the eye. If not, the eye's rays are exact.
     pub leads: bool,
     /// The edge of a cell: the mesh may miss what is thinner.
     pub cell: f64,
     /// Whether a side of the region cuts the model, so that the mesh is open there.
     pub is_cut: bool,
-    pub triangles: u64,
     /// The smallest coordinate of the mesh along the picture's up direction.
     pub lowest: f64,
     /// The number of distances to skeletons that were evaluated for it.
@@ -59,37 +60,42 @@ impl CoarseMesh {
         let Some((mesh, report, _)) = meshed(renderer, bounds, cell, hook)? else { return Ok(None) };
         Ok(Some(Self { mesh, cell, is_cut: report.cut_sides.any() }))
     }
+
+    /// The edge of cells with which there will be about so many triangles: their number grows with the square
+    /// of the fineness.
+    pub fn cell_for(&self, triangles: f64) -> f64 {
+        self.cell * (self.mesh.triangles.len() as f64 / triangles).sqrt()
+    }
 }
 
 impl Guide {
     /// A mesh with cells of this edge, or larger ones where there would be more triangles than
     /// [`MAX_GUIDE_TRIANGLES`] or more cells along a side than [`MAX_GUIDE_CELLS`]. `None` if there is no
-    /// surface, or no mesh to be had of it.
+    /// surface, or no mesh to be had of it. `is_lit` asks for what light meets.
     pub fn new(
         renderer: &Renderer,
         (bounds, coarse): (&Box3, &CoarseMesh),
         cell: f64,
-        up: [f64; 3],
+        (up, is_lit): ([f64; 3], bool),
         hook: Hook<'_>,
     ) -> Result<Option<Self>, RenderError> {
-        // The number of triangles of a surface grows with the square of the fineness.
         let wanted = cell;
-        let expected = coarse.mesh.triangles.len() as f64;
-        let least = coarse.cell * (expected / MAX_GUIDE_TRIANGLES as f64).sqrt();
+        let least = coarse.cell_for(MAX_GUIDE_TRIANGLES as f64);
         let cell = cell.max(least).max(f64::from(bounds.longest_side()) / MAX_GUIDE_CELLS as f64);
         let Some((mesh, report, evaluations)) = meshed(renderer, bounds, cell, hook)? else {
             return Ok(None);
         };
         let height =
             |position: &[f32; 3]| (0..3).map(|axis| f64::from(position[axis]) * up[axis]).sum::<f64>();
-        let Some(hierarchy) = Hierarchy::new(&mesh.positions, &mesh.triangles) else { return Ok(None) };
+        let lowest = mesh.positions.iter().map(height).fold(f64::INFINITY, f64::min);
+        let hierarchy = if is_lit { Hierarchy::new(&mesh.positions, &mesh.triangles) } else { None };
         Ok(Some(Self {
+            mesh,
             hierarchy,
             leads: cell <= LEADING * wanted,
             cell,
             is_cut: report.cut_sides.any(),
-            triangles: mesh.triangles.len() as u64,
-            lowest: mesh.positions.iter().map(height).fold(f64::INFINITY, f64::min),
+            lowest,
             evaluations,
         }))
     }

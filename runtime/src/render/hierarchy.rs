@@ -14,9 +14,7 @@
 //! answers have the same bits for every instruction set and any number of threads.
 
 use super::beam::SegmentBeam;
-use super::boxes::{
-    BoxNode, Corners, EightLanes, NOWHERE, RayPart, WIDE, cross, finite_lanes, inverse, joined,
-};
+use super::boxes::{BoxNode, Corners, EightLanes, NOWHERE, RayPart, WIDE, finite_lanes, inverse, joined};
 use crate::parallel::*;
 
 /// By how much a triangle reaches beyond its edges, as a part of it: no ray slips through between two.
@@ -27,15 +25,6 @@ const BUNDLE: usize = 64;
 const MANY: usize = 192;
 /// Nodes that wait at most: seven brothers on each of eleven levels, and the last eight.
 const WAITING: usize = 96;
-
-/// Where a ray meets a mesh first.
-#[derive(Clone, Copy)]
-pub struct MeshMeeting {
-    /// The distance from the segment's origin.
-    pub distance: f32,
-    /// The normal of the triangle, of any length, outwards.
-    pub normal: [f32; 3],
-}
 
 /// Eight triangles: of each a corner, and the edges from there to the other two. What is missing is 0.
 #[derive(Clone)]
@@ -95,13 +84,6 @@ impl TriangleCluster {
             behind[i] = u32::from(volume < 0.0);
         }
         (distances, behind)
-    }
-
-    /// The normal of a triangle, of any length.
-    #[inline(always)]
-    fn normal(&self, lane: usize) -> [f32; 3] {
-        let [a, b] = self.edges.each_ref().map(|edge| edge.map(|axis| axis[lane]));
-        cross(a, b)
     }
 }
 
@@ -186,14 +168,6 @@ impl Hierarchy {
             boxes = around;
         }
         (!clusters.is_empty()).then_some(Self { clusters, levels })
-    }
-
-    /// Where each segment meets the mesh first, from either side. It is fast where neighbours in the list are
-    /// neighbours in space.
-    pub fn first_of(&self, segments: &[RayPart]) -> Vec<Option<MeshMeeting>> {
-        let mut met = vec![None; segments.len()];
-        first_all(self, segments, &mut met);
-        met
     }
 
     /// Which segments meet the mesh. Triangles that a segment meets from behind count only at distances
@@ -283,24 +257,6 @@ impl Hierarchy {
     }
 }
 
-/// Looks for a nearer meeting in a cluster. Returns the distance up to which to look on.
-#[inline(always)]
-fn first_in(cluster: &TriangleCluster, segment: &RayPart, reach: f32, met: &mut Option<MeshMeeting>) -> f32 {
-    let (distances, _) = cluster.meet(segment, reach);
-    let mut mask = finite_lanes(&distances);
-    let mut best = reach;
-    while mask != 0 {
-        let lane = (mask.trailing_zeros() & 7) as usize;
-        mask &= mask - 1;
-        let distance = distances[lane];
-        if distance < best || (distance == best && met.is_none()) {
-            best = distance;
-            *met = Some(MeshMeeting { distance, normal: cluster.normal(lane) });
-        }
-    }
-    best
-}
-
 /// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to
 /// look on: less than 0 if it does.
 #[inline(always)]
@@ -316,21 +272,6 @@ fn any_in(cluster: &TriangleCluster, segment: &RayPart, (depth, reach): (f32, f3
 }
 
 // What is called from the loops below is always inlined: it takes their instruction set.
-
-#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn first_all(hierarchy: &Hierarchy, segments: &[RayPart], met: &mut [Option<MeshMeeting>]) {
-    let mut near = NearClusters::default();
-    for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
-        let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
-        for (segment, met) in segments.iter().zip(met) {
-            if is_narrow {
-                near.walk(hierarchy, segment, |cluster, reach| first_in(cluster, segment, reach, met));
-            } else {
-                hierarchy.walk(segment, |cluster, reach| first_in(cluster, segment, reach, met));
-            }
-        }
-    }
-}
 
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn any_all(hierarchy: &Hierarchy, segments: &[RayPart], depth: f32, met: &mut [bool]) {
@@ -380,19 +321,16 @@ mod tests {
                     RayPart { origin: from, direction, reach: 3.0 * (number() + 1.0) }
                 })
                 .collect();
-            let firsts = hierarchy.first_of(&segments);
             let depth = 0.3;
             let blocked = hierarchy.any_of(&segments, depth);
-            for ((segment, first), blocked) in segments.iter().zip(firsts).zip(blocked) {
+            for (segment, blocked) in segments.iter().zip(blocked) {
                 let mut all = Vec::new();
                 for cluster in &hierarchy.clusters {
                     let (distances, behind) = cluster.meet(segment, segment.reach);
                     all.extend(distances.into_iter().zip(behind).filter(|(t, _)| t.is_finite()));
                 }
-                let nearest = all.iter().map(|(t, _)| *t).fold(f32::INFINITY, f32::min);
-                assert_eq!(first.map_or(f32::INFINITY, |met| met.distance), nearest);
                 assert_eq!(blocked, all.iter().any(|&(t, behind)| t > depth || behind == 0));
-                hits += u32::from(first.is_some());
+                hits += u32::from(blocked);
             }
             assert!(count < 64 || hits > 20, "{count}: {hits}");
         }

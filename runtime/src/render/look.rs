@@ -8,15 +8,15 @@
 //!
 //! Rays whose steps do not end near a place of the surface are traced exactly.
 
-use super::boxes::RayPart;
 use super::cast::{CastHit, Meetings, SurfacePaint, cast, cuts};
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::guide::Guide;
 use super::material::SurfaceMaterial;
+use super::raster::MeshMeeting;
 use super::settings::Quality;
-use super::vector::{Vector, along, dot, scale, unit};
+use super::vector::{Vector, along, cross, dot, scale, sub, unit};
 use crate::boxes::{Box3, Divisible as _, MAX_PARTS};
 use crate::prune::Region;
 use crate::span::span;
@@ -34,37 +34,28 @@ struct Approach {
     t: f64,
     /// The way from the mesh, along the ray.
     way: f64,
-    /// The normal of the mesh, where the field has none.
-    normal: Vector,
+    /// The triangle that the ray meets.
+    triangle: u32,
 }
 
-/// The part of a ray in its span, in f32.
-pub fn segment(ray: &Ray) -> RayPart {
-    RayPart {
-        origin: along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32),
-        direction: ray.direction.map(|x| x as f32),
-        reach: (ray.span[1] - ray.span[0]) as f32,
-    }
-}
-
-/// Finds the first hits of rays, led by a mesh. Directions are unit vectors.
-pub fn look(frame: &Frame<'_>, guide: &Guide, casts: &[Ray]) -> Result<Meetings, RenderError> {
+/// Finds the first hits of rays, led by where they meet a mesh. Directions are unit vectors.
+pub fn look(
+    frame: &Frame<'_>,
+    guide: &Guide,
+    casts: &[Ray],
+    meetings: &[Option<MeshMeeting>],
+) -> Result<Meetings, RenderError> {
     span!("look");
     let paint = SurfacePaint::new(frame);
     let mut evaluations = vec![0.0; casts.len()];
     let mut met = if guide.is_cut { cuts(frame, casts, &paint, &mut evaluations)? } else { Vec::new() };
     let mut is_cut = vec![false; casts.len()];
     met.iter().for_each(|met| is_cut[met.cast] = true);
-    let open: Vec<usize> = (0..casts.len()).filter(|&cast| !is_cut[cast]).collect();
-    let segments: Vec<RayPart> = open.iter().map(|&cast| segment(&casts[cast])).collect();
-    let meetings = guide.hierarchy.first_of(&segments);
     let mut approaches: Vec<Approach> = Vec::new();
-    for (&cast, meeting) in open.iter().zip(meetings) {
-        if let Some(meeting) = meeting {
-            let t = casts[cast].span[0] + f64::from(meeting.distance);
-            let normal = unit(meeting.normal.map(f64::from));
-            let normal = normal.unwrap_or_else(|| scale(casts[cast].direction, -1.0));
-            approaches.push(Approach { cast, t, way: 0.0, normal });
+    for (cast, (ray, meeting)) in casts.iter().zip(meetings).enumerate() {
+        if let (Some(meeting), false) = (meeting, is_cut[cast]) {
+            let t = meeting.distance.clamp(ray.span[0], ray.span[1]);
+            approaches.push(Approach { cast, t, way: 0.0, triangle: meeting.triangle });
         }
     }
     let steps = if frame.render.quality == Quality::Draft { 1 } else { 2 };
@@ -167,10 +158,19 @@ impl Sight<'_> {
         CastHit {
             cast: approach.cast,
             position: along(ray.origin, approach.t, ray.direction),
-            normal: outwards.unwrap_or(approach.normal),
+            normal: outwards.unwrap_or_else(|| self.normal(approach)),
             paint,
             material,
         }
+    }
+
+    /// The normal of the mesh, where the field has none.
+    fn normal(&self, approach: &Approach) -> Vector {
+        let mesh = &self.guide.mesh;
+        let corners = mesh.triangles[approach.triangle as usize];
+        let [a, b, c] = corners.map(|vertex| mesh.positions[vertex as usize].map(f64::from));
+        let outwards = unit(cross(sub(b, a), sub(c, a)));
+        outwards.unwrap_or_else(|| scale(self.casts[approach.cast].direction, -1.0))
     }
 
     /// The regions of each [`TOGETHER`] points.

@@ -16,6 +16,7 @@
 //! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
 //! come from sequences that each pixel shifts by a function of its place alone.
 
+mod area;
 mod beam;
 mod boxes;
 mod camera;
@@ -32,6 +33,7 @@ mod lights;
 mod look;
 mod material;
 mod noise;
+mod raster;
 mod renderer;
 mod report;
 mod seen;
@@ -59,10 +61,11 @@ use jbt_model::check::CheckedTree;
 use crate::compiler::Compiler;
 use crate::job::{Hook, Job};
 
+use area::TileArea;
 use develop::{Gathered, develop};
 use frame::Frame;
 use telling::Telling;
-use tile::{Tile, TileArea};
+use tile::Tile;
 
 /// The number of tiles between two reports of progress.
 const STRIDE: usize = 32;
@@ -140,7 +143,7 @@ impl Render {
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
             rays: done.rays,
             evaluations: done.evaluations.round() as u64 + mesh_evaluations,
-            triangles: guide.map_or(0, |guide| guide.triangles),
+            triangles: guide.map_or(0, |guide| guide.mesh.triangles.len() as u64),
             range,
             engine: renderer.evaluator.engine(),
             notice,

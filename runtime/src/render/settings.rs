@@ -116,8 +116,8 @@ impl Quality {
     /// The edge of a cell of the mesh that guides rays, in pixels; the best quality has none.
     pub(super) fn cell(self) -> f64 {
         match self {
-            Self::Draft => 8.0,
-            Self::Good | Self::Best => 5.0,
+            Self::Draft => 5.0,
+            Self::Good | Self::Best => 3.5,
         }
     }
 

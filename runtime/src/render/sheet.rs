@@ -12,6 +12,7 @@
 
 use std::time::Instant;
 
+use super::area::TileArea;
 use super::cast::{Meetings, cast};
 use super::develop::Gathered;
 use super::error::RenderError;
@@ -19,11 +20,12 @@ use super::frame::Frame;
 use super::gather::{Light, RayBudget, Spot, gather, unshadowed};
 use super::guide::Guide;
 use super::look::look;
+use super::raster::{MeshMeeting, MeshRaster};
 use super::seen::{SeenKind, SeenPoint};
 use super::settings::{Quality, RenderMode};
 use super::smooth::{SMOOTH_ROWS, smooth};
 use super::telling::Telling;
-use super::tile::{Tile, TileArea};
+use super::tile::Tile;
 use super::vector::{length, sub};
 use crate::parallel::*;
 use crate::trace::Ray;
@@ -45,6 +47,8 @@ const AGREE: f64 = 4.0;
 struct PictureSheet<'a> {
     frame: &'a Frame<'a>,
     guide: &'a Guide,
+    /// The mesh in the tiles; `None` where it does not lead the eye.
+    raster: Option<MeshRaster<'a>>,
     /// The first row, and the row behind the last one.
     rows: [u32; 2],
     tiles: Vec<TileArea>,
@@ -128,28 +132,45 @@ fn pixels(area: &TileArea) -> Vec<[u32; 2]> {
     pixels
 }
 
-/// What some rays through the picture see, how many of them go into the region, and how many evaluations they
-/// took.
+/// What some rays through the picture see, how many of them were followed, and how many evaluations they
+/// took. `follows` says by its index whether a ray may meet anything; `trace` has the indices of those that
+/// may, and the rays.
 fn sights(
     frame: &Frame<'_>,
     places: &[[f64; 2]],
-    trace: impl Fn(&[Ray]) -> Result<Meetings, RenderError>,
+    follows: impl Fn(usize) -> bool,
+    trace: impl Fn(&[usize], &[Ray]) -> Result<Meetings, RenderError>,
 ) -> Result<(Vec<SeenPoint>, u64, f64), RenderError> {
-    let casts: Vec<Option<Ray>> = places.iter().map(|&[x, y]| frame.cast(x, y)).collect();
-    let rays: Vec<Ray> = casts.iter().flatten().copied().collect();
-    let meetings = trace(&rays)?;
-    let mut met = meetings.met.iter().peekable();
-    let mut ray = 0;
-    let mut seen = Vec::with_capacity(places.len());
-    for (&place, cast) in places.iter().zip(&casts) {
-        let hit = cast.and_then(|_| {
-            ray += 1;
-            met.next_if(|met| met.cast == ray - 1)
-        });
-        seen.push(hit.map_or_else(|| SeenPoint::behind(frame, place), |hit| SeenPoint::surface(frame, hit)));
+    let (mut followed, mut rays) = (Vec::new(), Vec::new());
+    for (index, &[x, y]) in places.iter().enumerate() {
+        if let Some(ray) = follows(index).then(|| frame.cast(x, y)).flatten() {
+            followed.push(index);
+            rays.push(ray);
+        }
     }
+    let meetings = trace(&followed, &rays)?;
+    let mut met = meetings.met.iter().peekable();
+    let seen = places.iter().enumerate().map(|(index, &place)| {
+        let hit = met.next_if(|met| followed[met.cast] == index);
+        hit.map_or_else(|| SeenPoint::behind(frame, place), |hit| SeenPoint::surface(frame, hit))
+    });
+    let seen = seen.collect();
     let evaluations = meetings.evaluations.iter().map(|&count| f64::from(count)).sum();
     Ok((seen, rays.len() as u64, evaluations))
+}
+
+/// What some exact rays through the picture see: see [`sights`].
+fn exactly(frame: &Frame<'_>, places: &[[f64; 2]]) -> Result<(Vec<SeenPoint>, u64, f64), RenderError> {
+    sights(frame, places, |_| true, |_, rays| cast(frame, rays))
+}
+
+/// The smallest part of a tile that holds some pixels of it; at least one.
+fn around(area: &TileArea, pixels: &[[u32; 2]]) -> TileArea {
+    let end = |[x, y]: [u32; 2]| [x + 1, y + 1];
+    let (low, high) = pixels.iter().fold(([u32::MAX; 2], [area.x, area.y]), |(low, high), &pixel| {
+        ([0, 1].map(|axis| low[axis].min(pixel[axis])), [0, 1].map(|axis| high[axis].max(end(pixel)[axis])))
+    });
+    TileArea { x: low[0], y: low[1], width: high[0] - low[0], height: high[1] - low[1] }
 }
 
 /// What a tile sees.
@@ -165,9 +186,12 @@ impl<'a> PictureSheet<'a> {
     fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Self {
         let width = frame.render.size[0];
         let tiles = TileArea::of_rows(width, rows, 1);
+        let raster =
+            guide.leads.then(|| MeshRaster::new(&frame.camera, frame.render.size, &guide.mesh, rows));
         Self {
             frame,
             guide,
+            raster,
             rows,
             is_exact: Vec::new(),
             tiles,
@@ -197,7 +221,7 @@ impl<'a> PictureSheet<'a> {
 
     /// Finds what each pixel sees.
     fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
-        let found = of_tiles(&self.tiles, (telling, end), |_, area| self.look_tile(area))?;
+        let found = of_tiles(&self.tiles, (telling, end), |tile, area| self.look_tile(tile, area))?;
         for (area, sight) in self.tiles.clone().iter().zip(found) {
             for (pixel, seen) in pixels(area).into_iter().zip(sight.seen) {
                 let index = self.index(pixel);
@@ -231,7 +255,7 @@ impl<'a> PictureSheet<'a> {
             let near: Vec<[u32; 2]> =
                 pixels(area).into_iter().filter(|pixel| !self.is_exact[tile] && is_near(pixel)).collect();
             let places: Vec<[f64; 2]> = near.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
-            let sight = sights(self.frame, &places, |rays| cast(self.frame, rays))?;
+            let sight = exactly(self.frame, &places)?;
             Ok((near, sight))
         })?;
         for (near, (seen, rays, evaluations)) in found {
@@ -248,32 +272,46 @@ impl<'a> PictureSheet<'a> {
     }
 
     /// What a tile sees, in the order of [`pixels`].
-    fn look_tile(&self, area: &TileArea) -> Result<TileSight, RenderError> {
+    fn look_tile(&self, tile: usize, area: &TileArea) -> Result<TileSight, RenderError> {
         let frame = self.frame;
         let pixels = pixels(area);
         let places: Vec<[f64; 2]> = pixels.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
-        let exactly = |rays: &[Ray]| cast(frame, rays);
-        if !self.guide.leads {
-            let (seen, rays, evaluations) = sights(frame, &places, exactly)?;
+        let Some(raster) = &self.raster else {
+            let (seen, rays, evaluations) = exactly(frame, &places)?;
             return Ok(TileSight { seen, is_exact: true, rays, evaluations });
-        }
-        let (mut seen, mut rays, mut evaluations) =
-            sights(frame, &places, |rays| look(frame, self.guide, rays))?;
+        };
+        let meshed = raster.tile(tile, area, 1);
+        let meets = |[x, y]: [u32; 2]| raster.meeting(&meshed, [x - area.x, y - area.y]);
+        let meetings: Vec<_> = pixels.iter().map(|&pixel| meets(pixel)).collect();
+        let (mut seen, mut rays, mut evaluations) = self.led(&places, &meetings)?;
         let mut is_exact = false;
         if frame.render.quality != Quality::Draft {
             let is_watched = |&at: &usize| pixels[at].iter().all(|at| at % WATCH == WATCH / 2);
             let watched: Vec<usize> = (0..pixels.len()).filter(is_watched).collect();
             let some: Vec<[f64; 2]> = watched.iter().map(|&at| places[at]).collect();
-            let (exact, more, cost) = sights(frame, &some, exactly)?;
+            let (exact, more, cost) = exactly(frame, &some)?;
             (rays, evaluations) = (rays + more, evaluations + cost);
             let misses = |(&at, exact): (&usize, &SeenPoint)| self.misses(&pixels, &seen, pixels[at], exact);
             is_exact = watched.iter().zip(&exact).any(misses);
             if is_exact {
-                let (exact, more, cost) = sights(frame, &places, exactly)?;
+                let (exact, more, cost) = exactly(frame, &places)?;
                 (seen, rays, evaluations) = (exact, rays + more, evaluations + cost);
             }
         }
         Ok(TileSight { seen, is_exact, rays, evaluations })
+    }
+
+    /// What some rays see that the mesh leads: see [`sights`].
+    fn led(
+        &self,
+        places: &[[f64; 2]],
+        meetings: &[Option<MeshMeeting>],
+    ) -> Result<(Vec<SeenPoint>, u64, f64), RenderError> {
+        let follows = |index: usize| self.guide.is_cut || meetings[index].is_some();
+        sights(self.frame, places, follows, |followed, rays| {
+            let meetings: Vec<_> = followed.iter().map(|&index| meetings[index]).collect();
+            look(self.frame, self.guide, rays, &meetings)
+        })
     }
 
     /// Whether what an exact ray sees is not seen at its pixel, nor at any pixel beside.
@@ -334,7 +372,7 @@ impl<'a> PictureSheet<'a> {
         let made = of_tiles(&self.tiles, (telling, end), |tile, area| {
             let inner: Vec<[u32; 2]> =
                 pixels(area).into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
-            let (values, rays, evaluations) = self.develop_tile(&inner, self.is_exact[tile])?;
+            let (values, rays, evaluations) = self.develop_tile((tile, area), &inner)?;
             Ok((inner, values, rays, evaluations))
         })?;
         for (pixels, values, rays, evaluations) in made {
@@ -362,21 +400,32 @@ impl<'a> PictureSheet<'a> {
     /// The values of pixels, and the rays and evaluations that they took.
     fn develop_tile(
         &self,
+        (tile, area): (usize, &TileArea),
         pixels: &[[u32; 2]],
-        is_exact: bool,
     ) -> Result<(Vec<Gathered>, u64, f64), RenderError> {
         let parts = self.frame.render.antialias;
         let is_edge: Vec<bool> = pixels.iter().map(|&pixel| parts > 1 && self.is_edge(pixel)).collect();
-        let mut places = Vec::new();
-        for &pixel in pixels.iter().zip(&is_edge).filter(|(_, edge)| **edge).map(|(pixel, _)| pixel) {
-            places.extend(
-                (0..parts * parts).map(|part| self.place(pixel, [part % parts, part / parts], parts)),
-            );
+        let edges: Vec<[u32; 2]> =
+            pixels.iter().zip(&is_edge).filter(|(_, edge)| **edge).map(|(&pixel, _)| pixel).collect();
+        let (mut places, mut samples) = (Vec::new(), Vec::new());
+        for &[x, y] in &edges {
+            for part in (0..parts * parts).map(|part| [part % parts, part / parts]) {
+                places.push(self.place([x, y], part, parts));
+                samples.push([(x - area.x) * parts + part[0], (y - area.y) * parts + part[1]]);
+            }
         }
-        let is_exact = is_exact || self.frame.render.quality != Quality::Draft;
-        let (seen, rays, evaluations) = sights(self.frame, &places, |rays| {
-            if is_exact { cast(self.frame, rays) } else { look(self.frame, self.guide, rays) }
-        })?;
+        let leads = !self.is_exact[tile] && self.frame.render.quality == Quality::Draft;
+        let (seen, rays, evaluations) = match &self.raster {
+            Some(raster) if leads && !edges.is_empty() => {
+                let around = around(area, &edges);
+                let meshed = raster.tile(tile, &around, parts);
+                let beside = [around.x - area.x, around.y - area.y].map(|pixels| pixels * parts);
+                let at = |&[x, y]: &[u32; 2]| raster.meeting(&meshed, [x - beside[0], y - beside[1]]);
+                let meetings: Vec<_> = samples.iter().map(at).collect();
+                self.led(&places, &meetings)?
+            }
+            _ => exactly(self.frame, &places)?,
+        };
         let each = 1.0 / (parts * parts) as f32;
         let mut seen = seen.chunks((parts * parts) as usize);
         let values = pixels.iter().zip(is_edge).map(|(&pixel, is_edge)| {

@@ -12,9 +12,11 @@
 
 mod block;
 mod npy;
+mod vdb;
 
 pub use block::Block;
 pub use npy::write_npy;
+pub use vdb::{VdbVolume, write_vdb};
 
 use crate::parallel::*;
 use jbt_model::diagnostic::Diagnostics;

@@ -12,7 +12,7 @@ use crate::{CRATES, sources};
 /// behind it.
 const MODEL: &[&[&str]] = &[
     // Ground: numbers, boxes, messages.
-    &["affine", "angle", "bounds", "diagnostic", "field", "power", "query", "report", "word"],
+    &["affine", "angle", "bounds", "diagnostic", "field", "orientation", "power", "query", "report", "word"],
     &["origin"],
     // Members.
     &["axis", "member"],
@@ -21,7 +21,7 @@ const MODEL: &[&[&str]] = &[
     &["function"],
     &["number"],
     &["expression", "interop"],
-    &["attribute", "map", "warp"],
+    &["attribute", "map", "particles", "warp"],
     // What nodes mean, and what was written.
     &["kind"],
     &["written"],

@@ -11,7 +11,7 @@ mod types;
 use std::path::{Path, PathBuf};
 
 /// All crates.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "frontend/model",
     "frontend/text",
     "frontend/lower",
@@ -21,6 +21,7 @@ const CRATES: [&str; 9] = [
     "cli",
     "benches",
     "testkit",
+    "python",
 ];
 
 fn root() -> PathBuf {
@@ -62,6 +63,7 @@ fn crates_depend_downwards() {
         ("jit", &["jbt-model", "jbt-text", "jbt-lower", "glam", "rayon"]),
         ("runtime", &["cranelift"]),
         ("cli", &["jbt-"]),
+        ("python", &["jbt-lower", "jbt-ir", "jbt-jit", "cranelift", "glam"]),
         ("benches", &["jbt-model", "jbt-text", "jbt-lower", "jbt-ir", "jbt-jit"]),
     ] {
         let dependencies = dependencies(name);

@@ -17,6 +17,19 @@ members! { NodeKind {
     ])
     // A lone leaf keeps its colour where it has no field.
     .attribute("color", [5.0, 0.0, 0.0], &[1.0, 0.0, 0.0])],
+    Particles(_) => vec![row("two and a point", "sum {
+        particles { at ((-1 0 0) (1 0 0)) radius 2 strength (1 3) color ((1 0 0) (0 0 1)) }
+        translate (0 4 0) { particles { at ((0 0 0)) radius 1 } }
+    }", &[
+        ([0.0; 3], 2.0),
+        ([-1.0, 0.0, 0.0], 1.0),
+        ([2.0, 0.0, 0.0], 1.5),
+        ([0.0, 4.5, 0.0], 0.5),
+    ])
+    .attribute("color", [0.0; 3], &[0.25, 0.0, 0.75])
+    .attribute("color", [-1.0, 0.0, 0.0], &[1.0, 0.0, 0.0])
+    // Without values of its own, a particle has what is bound above it: here the default.
+    .attribute("color", [0.0, 4.0, 0.0], &[1.0, 1.0, 1.0])],
     Combine(_) => vec![nested(), shared()],
     Expression(_) => expressions::rows(),
     Select(_) => selectors(),

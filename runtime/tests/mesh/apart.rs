@@ -61,6 +61,25 @@ fn read(mesh: &Mesh, format: Format) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
             (planes(first, step), mesh.triangles.clone())
         }
         Format::Glb => (planes(find(b"BIN\0"), 12), mesh.triangles.clone()),
+        Format::Usda => {
+            let text = String::from_utf8(bytes).expect("text");
+            let list = text.split_once("points = [").expect("points").1.split_once(']').expect("an end").0;
+            let real = |word: &str| {
+                word.trim_matches(|c: char| "( )\n".contains(c)).parse::<f32>().expect("a number")
+            };
+            let reals: Vec<f32> = list.split(',').map(real).collect();
+            (reals.as_chunks().0.to_vec(), mesh.triangles.clone())
+        }
+        Format::ThreeMf => {
+            let text = String::from_utf8(unpacked(&bytes)).expect("text");
+            let lines = text.lines().filter_map(|line| line.strip_prefix("<vertex "));
+            let positions = lines.map(|line| {
+                let words: Vec<f32> =
+                    line.split('"').skip(1).step_by(2).map(|word| word.parse().expect("a number")).collect();
+                [words[0], words[1], words[2]]
+            });
+            (positions.collect(), mesh.triangles.clone())
+        }
         Format::Stl => {
             let corners = mesh.triangles.iter().enumerate().flat_map(|(n, _)| {
                 let first = 84 + 50 * n + 12;
@@ -71,6 +90,16 @@ fn read(mesh: &Mesh, format: Format) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
             (soup, triangles.collect())
         }
     }
+}
+
+/// The last entry of an archive.
+fn unpacked(bytes: &[u8]) -> Vec<u8> {
+    let start = bytes.windows(4).rposition(|word| word == b"PK\x03\x04").expect("an entry");
+    let name = usize::from(bytes[start + 26]);
+    let mut text = Vec::new();
+    let mut packed = flate2::read::DeflateDecoder::new(&bytes[start + 30 + name..]);
+    std::io::Read::read_to_end(&mut packed, &mut text).expect("it is deflated");
+    text
 }
 
 #[track_caller]
@@ -99,7 +128,7 @@ fn particles_are_closed_when_equal_positions_are_merged() {
     let made = mesh_in(&text, None, Fineness::Cell(0.03));
     assert!(made.report.closed && !made.report.crowded && made.mesh.positions.len() > 100_000);
     assert_apart(&made.mesh);
-    for format in [Format::Glb, Format::Obj, Format::Ply, Format::Stl] {
+    for format in Format::ALL {
         let (positions, triangles) = read(&made.mesh, format);
         let (count, triangles) = merge(&positions, &triangles);
         assert_eq!(count, made.mesh.positions.len(), "{format:?}");

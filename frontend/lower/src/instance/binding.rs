@@ -6,13 +6,14 @@ use crate::computed::{Computed, ComputedKind, attribute};
 use crate::names::ComputedId;
 use jbt_model::attribute::AttributeValue;
 use jbt_model::check::NodeId;
+use jbt_model::kind::NodeKind;
 
 impl Finder<'_> {
-    /// What is computed for a leaf, of each attribute group.
+    /// What is computed for a leaf that is so many rows, of each attribute group.
     pub(super) fn computed(
         &mut self,
         bindings: BindingsId,
-        leaf: NodeId,
+        leaf: (NodeId, u32),
         position: PositionId,
     ) -> Box<[Option<ComputedId>]> {
         let scene = &self.scene;
@@ -31,7 +32,12 @@ impl Finder<'_> {
     }
 
     /// The computed value that a leaf is bound to, if it is no number.
-    fn name_computed(&mut self, bound: Bound, leaf: NodeId, position: PositionId) -> Option<ComputedId> {
+    fn name_computed(
+        &mut self,
+        bound: Bound,
+        (leaf, rows): (NodeId, u32),
+        position: PositionId,
+    ) -> Option<ComputedId> {
         let tree = self.scene.tree;
         let node = bound.node;
         let (key, kind, position, map, map_kind) = match attribute(self.scene.tree, node) {
@@ -64,7 +70,10 @@ impl Finder<'_> {
             let computed = Computed { kind, node, leaf, space, map, map_kind, uses: 0, shared: false };
             self.scene.computed.push(computed);
         }
-        self.scene.computed[id.0 as usize].uses += 1;
+        let computed = &mut self.scene.computed[id.0 as usize];
+        // The uv of particles is each one's own.
+        let is_each_ones = computed.leaf.is_some() && matches!(tree.node(leaf).kind, NodeKind::Particles(_));
+        computed.uses = if is_each_ones { 1 } else { computed.uses.saturating_add(rows) };
         Some(id)
     }
 

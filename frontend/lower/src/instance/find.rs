@@ -178,6 +178,7 @@ impl<'a> Finder<'a> {
                 | NodeKind::Expression(_)
                 | NodeKind::Select(_)
                 | NodeKind::Primitive(_)
+                | NodeKind::Particles(_)
                 | NodeKind::Warp(_) => {
                     // Nobody asks again for what is met once and has nothing below it that others meet: it
                     // needs no name.
@@ -233,8 +234,10 @@ impl<'a> Finder<'a> {
         let kind = match &self.scene.tree.node(node).kind {
             NodeKind::Primitive(primitive) => {
                 let field = self.field(node, primitive, position);
-                InstanceKind::Leaf { field, bindings, computed: self.computed(bindings, node, position) }
+                let computed = self.computed(bindings, (node, 1), position);
+                InstanceKind::Leaf { field, bindings, computed }
             }
+            NodeKind::Particles(particles) => self.particles(node, particles, position, bindings),
             NodeKind::Warp(_) => {
                 let (inside, _) = frame.inside.expect("a warp's frame has its inside");
                 let weight = frame.children.get(1).copied();
@@ -245,7 +248,8 @@ impl<'a> Finder<'a> {
             NodeKind::Expression(expression) => {
                 let children = frame.children;
                 let is_leaf = children.is_empty();
-                let computed = if is_leaf { self.computed(bindings, node, position) } else { Box::default() };
+                let computed =
+                    if is_leaf { self.computed(bindings, (node, 1), position) } else { Box::default() };
                 let (position, shift) = self.near_box(node, expression, position);
                 InstanceKind::Expression { position, shift, bindings, children, computed }
             }
@@ -317,7 +321,7 @@ impl<'a> Finder<'a> {
                 primitive.strength != 1.0 || written.is_some_and(Written::strength_depends_on_parameters);
             let falloff = primitive.falloff.code(written.is_some_and(Written::falloff_depends_on_parameters));
             let code = LeafCode { map: inverse, skeleton: primitive.skeleton.kind(), falloff, strong };
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, code });
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, code, run: None });
         }
         self.scene.fields[id.0 as usize].uses += 1;
         id
@@ -336,7 +340,7 @@ impl<'a> Finder<'a> {
         InstanceKind::Difference { left: children[0], right }
     }
 
-    fn push(&mut self, node: NodeId, position: PositionId, kind: InstanceKind) -> InstanceId {
+    pub(super) fn push(&mut self, node: NodeId, position: PositionId, kind: InstanceKind) -> InstanceId {
         let space = self.scene.position(position).space;
         let (non_negative, bounded) = (self.non_negative(node, &kind), self.bounded(&kind));
         children(&kind).for_each(|child| self.scene.instances[child.0 as usize].uses += 1);
@@ -352,7 +356,11 @@ impl<'a> Finder<'a> {
         let of = |id: &InstanceId| self.scene.instance(*id).non_negative;
         match kind {
             InstanceKind::Leaf { field, .. } => {
-                let written = self.scene.tree.dependent(self.scene.field(*field).node);
+                let leaf = self.scene.field(*field);
+                if let Some(run) = &leaf.run {
+                    return run.non_negative;
+                }
+                let written = self.scene.tree.dependent(leaf.node);
                 let depends = written.is_some_and(Written::strength_depends_on_parameters);
                 self.scene.primitive(*field).strength >= 0.0 && !depends
             }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use jbt_ir::limits;
 use smallvec::SmallVec;
 
 use crate::diagnostic::{Diagnostic, Span};
@@ -68,10 +69,23 @@ impl Paths {
             true => paths(nodes, |node| node.kind.asked(&node.children)).into(),
             false => Arc::clone(&uses),
         };
-        let leaves =
-            nodes.iter().zip(&*asked).filter(|(node, _)| matches!(node.kind, NodeKind::Primitive(_)));
-        let leaf_uses = leaves.map(|(_, &uses)| uses).fold(0, u64::saturating_add);
+        let leaves = nodes.iter().zip(&*asked).map(|(node, uses)| uses.saturating_mul(leaves_in(&node.kind)));
+        let leaf_uses = leaves.fold(0, u64::saturating_add);
         Self { uses, asked, leaf_uses }
+    }
+}
+
+/// How many leaves with a skeleton a node is.
+fn leaves_in(kind: &NodeKind) -> u64 {
+    match kind {
+        NodeKind::Primitive(_) => 1,
+        NodeKind::Particles(particles) => particles.len() as u64,
+        NodeKind::Combine(_)
+        | NodeKind::Expression(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => 0,
     }
 }
 
@@ -92,33 +106,45 @@ fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Ve
 }
 
 /// Checks the number of paths from the root to all nodes: a bound of the work of lowering, and of its rows.
+/// Particles, whose numbers somebody has, count where they are used again.
 pub(super) fn check_instances(report: &mut Report, nodes: &[CheckedNode], most: usize) {
-    let weights = nodes.iter().map(|node| match &node.kind {
-        // Each piece is a row as well.
-        NodeKind::Primitive(leaf) => 1 + leaf.skeleton.piece_count(leaf.radius, most) as u64,
-        NodeKind::Combine(_)
-        | NodeKind::Expression(_)
-        | NodeKind::Select(_)
-        | NodeKind::Affine(_)
-        | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => 1,
-    });
     let paths = paths(nodes, |node| &node.children);
     let mut uses = paths.iter().fold(0, |all: u64, paths| all.saturating_add(*paths));
     let what = if uses > most as u64 { "nodes" } else { "nodes and pieces" };
-    for (paths, weight) in paths.into_iter().zip(weights) {
+    let mut particles = 0_u64;
+    for (&paths, node) in paths.iter().zip(nodes) {
         // Pieces take longer to count than nodes.
         if uses > most as u64 {
             break;
         }
-        uses = uses.saturating_add(paths.saturating_mul(weight - 1));
+        let rows = match &node.kind {
+            // Each piece is a row as well.
+            NodeKind::Primitive(leaf) => {
+                paths.saturating_mul(leaf.skeleton.piece_count(leaf.radius, most) as u64)
+            }
+            NodeKind::Particles(these) => {
+                particles = particles.saturating_add(paths.saturating_mul(these.len() as u64));
+                (paths - 1).saturating_mul(these.len() as u64)
+            }
+            NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => 0,
+        };
+        uses = uses.saturating_add(rows);
     }
+    let span = nodes.last().and_then(|root| root.span);
     if uses > most as u64 {
-        let span = nodes.last().and_then(|root| root.span);
         let count = if uses == u64::MAX { "more than 10^19".to_owned() } else { uses.to_string() };
         report.add(|| {
             Diagnostic::limit(span, format!("unfolded, the tree has {count} {what}; it may have {most}"))
                 .expected("share fewer subtrees")
         });
+    } else if particles > limits::MAX_PARTICLES as u64 {
+        let most = limits::MAX_PARTICLES;
+        let message = format!("the tree has {particles} particles; it may have {most}");
+        report.add(|| Diagnostic::limit(span, message).expected("expected fewer particles"));
     }
 }

@@ -116,7 +116,10 @@ impl CheckedModel {
                 .iter()
                 .zip(&edited.attributes)
                 .all(|(a, b)| bits(&a.default) == bits(&b.default));
-        let same = same_groups && before.iso == edited.iso && origin(before) == origin(edited);
+        let same = same_groups
+            && before.iso == edited.iso
+            && origin(before) == origin(edited)
+            && before.orientation == edited.orientation;
         if !same || before.parameters != edited.parameters {
             return None;
         }
@@ -172,6 +175,7 @@ impl CheckedModel {
                     share_name(&mut kind, &edited.attributes);
                     let old = &mut nodes[id.0 as usize];
                     is_whole &= !(counts_elsewhere(&old.kind) || counts_elsewhere(&kind));
+                    is_whole &= particles_in(&old.kind) == particles_in(&kind);
                     (old.kind, old.span) = (kind, node.span());
                     old.label = node.label().cloned();
                 }
@@ -200,6 +204,11 @@ impl CheckedModel {
 /// Whether a node decides how many paths or pieces there are.
 fn counts_elsewhere(kind: &NodeKind) -> bool {
     matches!(kind, NodeKind::Select(_)) || is_in_pieces(kind)
+}
+
+/// How many particles a node has.
+fn particles_in(kind: &NodeKind) -> usize {
+    if let NodeKind::Particles(particles) = kind { particles.len() } else { 0 }
 }
 
 /// The nodes of a tree without sharing, in the order of the check.

@@ -71,6 +71,33 @@ pub(super) fn share_name(kind: &mut NodeKind, groups: &[AttributeGroup]) {
     }
 }
 
+/// The width of a group, or a message that there is none of this name.
+pub(super) fn known_width(
+    report: &mut Report,
+    span: Option<Span>,
+    name: &str,
+    groups: &BTreeMap<&str, usize>,
+) -> Option<usize> {
+    let width = groups.get(name).copied();
+    if width.is_none() {
+        report.add(|| {
+            let help = match nearest(name, groups.keys().copied()) {
+                Some(other) => format!("perhaps `{other}` was meant"),
+                None => "declare it with its default first".to_owned(),
+            };
+            Diagnostic::error(span, format!("there is no attribute `{}`", clip(name))).expected(help)
+        });
+    }
+    width
+}
+
+/// A message about values of another width than their group has.
+pub(super) fn another_width(span: Option<Span>, name: &str, width: usize, found: usize) -> Diagnostic {
+    let message = format!("the attribute `{name}` has width {width}, not {found}");
+    let plural = if width == 1 { "" } else { "s" };
+    Diagnostic::error(span, message).expected(format!("expected {width} real{plural}"))
+}
+
 /// An attribute node: its group exists, and its value fits the group.
 pub(super) fn check_attribute(
     report: &mut Report,
@@ -79,22 +106,10 @@ pub(super) fn check_attribute(
     value: &AttributeValue,
     groups: &BTreeMap<&str, usize>,
 ) {
-    let Some(width) = groups.get(name).copied() else {
-        report.add(|| {
-            let help = match nearest(name, groups.keys().copied()) {
-                Some(other) => format!("perhaps `{other}` was meant"),
-                None => "declare it with its default first".to_owned(),
-            };
-            Diagnostic::error(span, format!("there is no attribute `{}`", clip(name))).expected(help)
-        });
-        return;
-    };
+    let Some(width) = known_width(report, span, name, groups) else { return };
     let mut fits = |numbers: &[f64]| {
         if numbers.len() != width {
-            let message = format!("the attribute `{name}` has width {width}, not {}", numbers.len());
-            let plural = if width == 1 { "" } else { "s" };
-            report
-                .add(|| Diagnostic::error(span, message).expected(format!("expected {width} real{plural}")));
+            report.add(|| another_width(span, name, width, numbers.len()));
         }
         check_numbers(report, span, format_args!("the attribute `{name}`"), numbers, f64::NEG_INFINITY);
     };

@@ -8,6 +8,7 @@ use jbt_ir::limits;
 use super::fields::{check_expressed, check_falloff, check_fields};
 use super::groups::check_attribute;
 use super::numbers::{check_choice, check_formula, check_number, check_numbers};
+use super::particles::check_particles;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::{NodeKind, Primitive};
 use crate::report::Report;
@@ -32,6 +33,10 @@ pub(super) fn check_node(
     let fits = match kind {
         NodeKind::Primitive(leaf) => {
             check_primitive(report, span, leaf);
+            (count == 0, "no children")
+        }
+        NodeKind::Particles(particles) => {
+            check_particles(report, span, particles, groups);
             (count == 0, "no children")
         }
         NodeKind::Combine(combinator) => {
@@ -82,6 +87,7 @@ pub(super) fn check_node(
 fn describe(kind: &NodeKind) -> String {
     match kind {
         NodeKind::Primitive(leaf) => format!("a {}", leaf.skeleton.kind().name()),
+        NodeKind::Particles(_) => "a node `particles`".to_owned(),
         NodeKind::Combine(combinator) => format!("a node `{}`", combinator.name()),
         NodeKind::Select(_) => "a node `select`".to_owned(),
         NodeKind::Expression(_) => "a node `expression`".to_owned(),

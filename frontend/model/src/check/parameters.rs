@@ -11,6 +11,7 @@ use super::numbers::check_number;
 use super::tree::CheckedTree;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::kind::NodeKind;
+use crate::model::Model;
 use crate::number::{Number, NumberFormula, ParameterValues};
 use crate::parameter::{Fixture, Parameter, is_name, not_finite, refresh, unknown};
 use crate::report::{Report, clip};
@@ -94,6 +95,45 @@ fn check_control(report: &mut Report, parameter: &Parameter) {
     }
 }
 
+impl Model {
+    /// The same with other values of some parameters. As text it has them in place of their defaults.
+    ///
+    /// A checked tree takes values without another check of the whole: see
+    /// [`CheckedTree::with_parameters`].
+    ///
+    /// ```
+    /// use jbt_model::builder::{param, point};
+    /// use jbt_model::model::Model;
+    /// let ball = Model::new(point([0, 0, 0], param("size", 1.0)));
+    /// let large = ball.with_parameters(&[("size", 3.0)]).unwrap();
+    /// assert_eq!(large.check().unwrap().support().high(), [3.0; 3]);
+    /// assert!(ball.with_parameters(&[("bulge", 3.0)]).is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// A parameter that the model does not have or that no setting reaches, and a value that is not finite.
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
+        let mut parameters = self.all_parameters();
+        let mut report = Report::default();
+        for &(name, value) in settings {
+            let place = parameters.iter().position(|parameter| parameter.name() == name);
+            match place.map(|place| &mut parameters[place]) {
+                None => report.add(|| unknown(name, &parameters)),
+                Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
+                Some(Parameter { name, declares: Some((what, place)), .. }) => {
+                    report.add(|| declares(name, *what, *place));
+                }
+                Some(parameter) => parameter.setting = Some(value),
+            }
+        }
+        if report.is_empty() {
+            Ok(Self { parameters, ..self.clone() })
+        } else {
+            Err(Diagnostics::new(report.finish(), self.source.clone()))
+        }
+    }
+}
+
 impl CheckedTree {
     /// The named parameters, in the order of their declarations.
     #[must_use]
@@ -163,10 +203,21 @@ impl CheckedTree {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
-        let (origin, source) = (self.origin, self.source.clone());
+        let (origin, orientation, source) = (self.origin, self.orientation, self.source.clone());
         let lineage = Some(Lineage { from: Arc::clone(&self.nodes), changed: changed.into() });
         let paths = Paths::new(&nodes);
-        Ok(Self { iso, attributes, paths, nodes, parameters, dependence, origin, source, lineage })
+        Ok(Self {
+            iso,
+            attributes,
+            paths,
+            nodes,
+            parameters,
+            dependence,
+            origin,
+            orientation,
+            source,
+            lineage,
+        })
     }
 
     /// The nodes, with those that depend on moved parameters evaluated and checked again; and which they
@@ -234,7 +285,8 @@ impl CheckedTree {
 pub(super) fn is_in_pieces(kind: &NodeKind) -> bool {
     match kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),
-        NodeKind::Combine(_)
+        NodeKind::Particles(_)
+        | NodeKind::Combine(_)
         | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)

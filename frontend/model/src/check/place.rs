@@ -51,6 +51,7 @@ pub(super) fn way_to(root: &Tree, node: &Tree) -> String {
 fn word(node: &Node) -> &str {
     node.name().unwrap_or_else(|| match node.written() {
         Written::Primitive { skeleton, .. } => skeleton.name(),
+        Written::Particles(_) => "particles",
         Written::Combine { combinator, .. } => combinator.name(),
         Written::Expression(_) => "expression",
         Written::Select(_) => "select",

@@ -13,6 +13,7 @@ use crate::bounds::Bounds;
 use crate::combine::extent::Extent;
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceText};
 use crate::kind::{NodeKind, Primitive};
+use crate::orientation::Orientation;
 use crate::origin::ModelOrigin;
 use crate::parameter::Parameter;
 
@@ -27,6 +28,7 @@ pub struct CheckedTree {
     pub(super) parameters: Vec<Parameter>,
     pub(super) dependence: Arc<Dependence>,
     pub(super) origin: ModelOrigin,
+    pub(super) orientation: Orientation,
     /// The text that spans refer to.
     pub(super) source: Option<SourceText>,
     /// The tree that it was made of, if it is an edit of another one.
@@ -36,14 +38,14 @@ pub struct CheckedTree {
 impl PartialEq for CheckedTree {
     /// Equal nodes, attributes and parameters; the source text does not count.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _, lineage: _ } =
-            self;
+        let Self { iso, attributes, nodes, parameters, dependence, origin, orientation, .. } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *nodes == other.nodes
             && *parameters == other.parameters
             && *dependence == other.dependence
             && *origin == other.origin
+            && *orientation == other.orientation
     }
 }
 
@@ -80,6 +82,12 @@ impl CheckedTree {
     #[must_use]
     pub fn with_origin(&self, origin: ModelOrigin) -> Self {
         Self { origin, ..self.clone() }
+    }
+
+    /// How the model stands.
+    #[must_use]
+    pub fn orientation(&self) -> Orientation {
+        self.orientation
     }
 
     /// All nodes.
@@ -199,6 +207,7 @@ impl CheckedTree {
             parameters: Vec::new(),
             dependence: Arc::default(),
             origin: ModelOrigin::WORLD,
+            orientation: self.orientation,
             source: self.source.clone(),
             lineage: None,
         }
@@ -237,6 +246,7 @@ fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
             let support = leaf.skeleton.bounds_within(leaf.radius);
             Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
         }
+        NodeKind::Particles(particles) => particles.extent(),
         NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
         NodeKind::Combine(combinator) => combinator.extent(children, iso),
         NodeKind::Expression(expression) => {

@@ -93,6 +93,12 @@ macro_rules! falloffs {
                 match self { $( Self::$name => $name::ALIASES, )+ $( Self::$rich(_) => $rich::ALIASES, )+ }
             }
 
+            /// The name of its constructor, which stands in [`builder`](crate::builder) if it has parameters.
+            #[must_use]
+            pub const fn constructor(self) -> &'static str {
+                match self { $( Self::$name => stringify!($module), )+ $( Self::$rich(_) => stringify!($rich_module), )+ }
+            }
+
             /// The parameters.
             #[must_use]
             pub const fn fields(self) -> &'static [Field] {

@@ -31,6 +31,10 @@ macro_rules! maps {
             #[must_use]
             pub const fn name(self) -> &'static str { match self { $( Self::$name => $name::NAME, )+ } }
 
+            /// The name of the constructor in [`builder`](crate::builder).
+            #[must_use]
+            pub const fn constructor(self) -> &'static str { match self { $( Self::$name => stringify!($module), )+ } }
+
             /// The parameters.
             #[must_use]
             pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name => $name::FIELDS, )+ } }

@@ -104,9 +104,10 @@ fn only(node: &Tree, left: Vec<Left>) -> Left {
         left.into_iter().zip(whole).map(|(left, whole)| left.tree(whole)).collect();
     let Some(first) = children.iter().flatten().next().cloned() else { return Left::Nothing };
     Left::Part(match node.node().written() {
-        Written::Primitive { .. } | Written::Map { .. } | Written::Attribute { .. } => {
-            node.with_children(vec![first])
-        }
+        Written::Primitive { .. }
+        | Written::Particles(_)
+        | Written::Map { .. }
+        | Written::Attribute { .. } => node.with_children(vec![first]),
         Written::Warp { .. } | Written::FormulaWarp(_) => match children[0].take() {
             Some(child) => {
                 node.with_children([child].into_iter().chain(whole[1..].iter().cloned()).collect())
@@ -138,7 +139,7 @@ fn without(node: &Tree, left: Vec<Left>) -> Left {
     let mut children: Vec<Option<Tree>> =
         left.into_iter().zip(whole).map(|(left, whole)| left.tree(whole)).collect();
     let rest = match node.node().written() {
-        Written::Primitive { .. } => return Left::All,
+        Written::Primitive { .. } | Written::Particles(_) => return Left::All,
         Written::Map { .. } | Written::Attribute { .. } | Written::Warp { .. } | Written::FormulaWarp(_) => {
             if children[0].is_none() {
                 Vec::new()

@@ -15,7 +15,9 @@ use std::mem::discriminant;
 
 use super::Tree;
 use crate::number::{Number, Step};
+use crate::particles::NumberArray;
 use crate::traverse::Visit;
+use crate::written::{Written, WrittenParticles};
 
 impl Tree {
     /// The same tree, of which equal subtrees are one: of the same words, numbers of the same bits that
@@ -56,6 +58,11 @@ fn hash(tree: &Tree) -> u64 {
     let node = tree.node();
     discriminant(node.written()).hash(&mut hasher);
     node.written().numbers().for_each(|number| number.value().to_bits().hash(&mut hasher));
+    if let Written::Particles(particles) = node.written() {
+        // Enough to tell most apart.
+        particles.positions.len().hash(&mut hasher);
+        particles.positions.iter().take(9).for_each(|number| number.to_bits().hash(&mut hasher));
+    }
     node.children().iter().for_each(|child| child.identity().hash(&mut hasher));
     node.name().hash(&mut hasher);
     hasher.finish()
@@ -74,4 +81,15 @@ fn is_same(a: &Tree, b: &Tree) -> bool {
         && a.name() == b.name()
         && a.written() == b.written()
         && a.written().numbers().zip(b.written().numbers()).all(same_bits)
+        && match (a.written(), b.written()) {
+            (Written::Particles(a), Written::Particles(b)) => have_same_bits(a, b),
+            _ => true,
+        }
+}
+
+/// Whether the arrays of equal particles are equal to the bit.
+fn have_same_bits(a: &WrittenParticles, b: &WrittenParticles) -> bool {
+    let same = |a: &NumberArray, b: &NumberArray| a.iter().map(f64::to_bits).eq(b.iter().map(f64::to_bits));
+    same(&a.positions, &b.positions)
+        && a.values.iter().zip(b.values.iter()).all(|(a, b)| same(&a.numbers, &b.numbers))
 }

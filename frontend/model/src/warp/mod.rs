@@ -62,6 +62,10 @@ macro_rules! warps {
             #[must_use]
             pub const fn name(self) -> &'static str { match self { $( Self::$name(_) => $name::NAME, )+ } }
 
+            /// The name of the constructor in [`builder`](crate::builder).
+            #[must_use]
+            pub const fn constructor(self) -> &'static str { match self { $( Self::$name(_) => stringify!($module), )+ } }
+
             /// The parameters.
             #[must_use]
             pub const fn fields(self) -> &'static [Field] {

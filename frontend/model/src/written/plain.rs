@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::{Radius, Written, as_written};
+use super::{Radius, Written, WrittenParticles, as_written};
 use crate::combine::Combinator;
 use crate::kind::{NodeKind, Primitive};
 use crate::map::{Affine, MapKind, Scale, ScaleAxes, Translate};
@@ -13,6 +13,7 @@ impl From<NodeKind> for Written {
     fn from(kind: NodeKind) -> Self {
         match kind {
             NodeKind::Primitive(leaf) => leaf.into(),
+            NodeKind::Particles(particles) => WrittenParticles::from(particles).into(),
             NodeKind::Combine(combinator) => combinator.into(),
             NodeKind::Expression(expression) => Self::Expression((&expression).into()),
             NodeKind::Select(which) => Self::Select(which.into()),

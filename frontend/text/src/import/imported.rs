@@ -3,6 +3,9 @@
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, SourceText};
 use jbt_model::model::Model;
 
+/// What a reader finds: a model with oddities of its file, or all errors of it.
+pub(crate) type ReadModel = Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>>;
+
 /// A model from a file of another system.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Imported {
@@ -13,11 +16,21 @@ pub struct Imported {
 }
 
 impl Imported {
+    /// The result of reading particles. Their nodes have no places in the file, so a model without warnings
+    /// keeps none of it.
+    pub(super) fn of_particles(bytes: &[u8], read: ReadModel) -> Result<Self, Diagnostics> {
+        let source = || Some(SourceText::new(SourceText::UNNAMED, bytes));
+        match read {
+            Ok((model, warnings)) => {
+                let source = if warnings.is_empty() { None } else { source() };
+                Ok(Self { model, warnings: Diagnostics::new(warnings, source) })
+            }
+            Err(list) => Err(Diagnostics::new(list, source())),
+        }
+    }
+
     /// The result of reading these bytes.
-    pub(super) fn from(
-        bytes: &[u8],
-        read: Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>>,
-    ) -> Result<Self, Diagnostics> {
+    pub(super) fn from(bytes: &[u8], read: ReadModel) -> Result<Self, Diagnostics> {
         let source = Some(SourceText::new(SourceText::UNNAMED, bytes));
         match read {
             Ok((model, warnings)) => {

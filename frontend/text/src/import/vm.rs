@@ -26,6 +26,7 @@ use std::collections::HashMap;
 use jbt_ir::limits::MAX_SCENE_BYTES;
 
 use super::Imported;
+use super::format::{SceneFormatRow, first_line};
 use jbt_model::combine::{Combinator, Intersection, Union};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::expression::{Assembler, Draft, Formula};
@@ -111,6 +112,12 @@ impl Instruction {
         &self.operands[..self.count]
     }
 }
+
+/// Instructions have names that begin with an underscore as a rule; no other text begins with one.
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
+    recognizes: |bytes| first_line(bytes).starts_with(b"_"),
+    ..SceneFormatRow::new(&["vm"], "a program of instructions", |bytes, _| vm(bytes))
+};
 
 /// The model of a program (`.vm`).
 ///

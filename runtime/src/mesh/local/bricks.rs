@@ -1,5 +1,6 @@
 //! The kept bricks of a mesh, and where they are.
 
+use jbt_model::orientation::Orientation;
 use rustc_hash::FxHashMap;
 
 use super::slots::{BufferSlot, BufferSlots};
@@ -45,12 +46,12 @@ pub(crate) struct BrickMesh {
 
 impl BrickMesh {
     /// No bricks, of a lattice.
-    pub(crate) fn new(lattice: Lattice, origin: [f64; 3]) -> Self {
+    pub(crate) fn new(lattice: Lattice, origin: [f64; 3], orientation: Orientation) -> Self {
         Self {
             lattice,
             edge: 0,
             bricks: FxHashMap::default(),
-            buffers: Mesh { origin, ..Mesh::default() },
+            buffers: Mesh { origin, orientation, ..Mesh::default() },
             vertex_slots: BufferSlots::default(),
             triangle_slots: BufferSlots::default(),
         }

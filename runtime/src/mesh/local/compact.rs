@@ -16,6 +16,7 @@ impl BrickMesh {
         };
         let mut mesh = Mesh {
             origin: self.buffers.origin,
+            orientation: self.buffers.orientation,
             attributes: self.buffers.attributes.iter().map(attribute).collect(),
             ..Mesh::default()
         };

@@ -22,12 +22,14 @@
 //!
 //! ParsIP's own evaluators disagree in places; the reader follows the mathematics of the format: names are
 //! read in any case, operators do what their names say even if their children are given as a range,
-//! quaternions are normalised, line segments end at their ends. NUL bytes and CRs are dropped anywhere.
+//! quaternions are normalised, line segments end at their ends. Where its scalar evaluator does something
+//! else than the operator means, a warning says so. NUL bytes and CRs are dropped anywhere.
 
 mod node;
 mod scan;
 mod state;
 mod value;
+mod warp;
 
 use glam::DAffine3;
 use jbt_ir::limits::{MAX_NODES, MAX_SCENE_BYTES};
@@ -36,13 +38,20 @@ use self::node::Reading;
 use self::scan::{Key, Section};
 use self::state::{Importer, Meaning, NodeState};
 use super::Imported;
+use super::format::{SceneFormatRow, first_line};
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
 use jbt_model::report::Report;
+use jbt_model::term::Term;
 use jbt_model::tree::Tree;
-use jbt_model::warp::Warp;
+
+/// ParsIP scenes are sections, the first of which begins with a bracket.
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
+    recognizes: |bytes| first_line(bytes).starts_with(b"["),
+    ..SceneFormatRow::new(&["blob", "scene"], "a ParsIP scene", |bytes, _| parsip(bytes))
+};
 
 /// The model of a ParsIP scene (`.blob`, `.scene`).
 ///
@@ -257,7 +266,15 @@ impl Importer<'_> {
 fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<Tree>) -> Option<Tree> {
     let tree = match meaning {
         Meaning::Combine(combinator) => Tree::at(span, combinator, children),
-        Meaning::Warp(twist) => Tree::at(span, Warp::from(twist), vec![children.into_iter().next()?]),
+        Meaning::Warp(warp) => Tree::at(span, warp, vec![children.into_iter().next()?]),
+        Meaning::Taper(taper) => taper.tree(&children.into_iter().next()?, span),
+        Meaning::Map(map) => Tree::at(span, map, vec![children.into_iter().next()?]),
+        Meaning::SmoothDifference => {
+            let (first, others) = children.split_first()?;
+            let left = |field: Term, other: &Tree| field * (1.0 - other.field());
+            let tree = Tree::expression(others.iter().fold(first.field(), left));
+            Tree::at(span, tree.node().written().clone(), tree.node().children().to_vec())
+        }
         Meaning::Same => children.into_iter().next()?,
         Meaning::Leaf { leaf, color } => {
             let tree = Tree::at(span, leaf, Vec::new());

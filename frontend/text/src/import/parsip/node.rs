@@ -6,15 +6,14 @@ use glam::{DAffine3, DQuat, DVec3};
 
 use super::scan::{Key, Section};
 use super::state::{Importer, Meaning};
+use super::warp::WarpName;
 use jbt_model::affine::scale_rotate_translate;
-use jbt_model::axis::Axis;
 use jbt_model::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::falloff::Falloff;
 use jbt_model::kind::Primitive;
 use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::{self, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
-use jbt_model::warp::Twist;
 
 /// The meaning of an operator's name.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -24,7 +23,8 @@ enum OperatorName {
     Ricci,
     /// The child as it is.
     Pass,
-    Twist,
+    Warp(WarpName),
+    SmoothDifference,
     /// An operator that this project lacks: its effect.
     Foreign(&'static str),
 }
@@ -33,22 +33,19 @@ const OPERATORS: &[(&str, OperatorName)] = &[
     ("UNION", OperatorName::Combine(Combinator::Union(Union {}))),
     ("INTERSECTION", OperatorName::Combine(Combinator::Intersection(Intersection {}))),
     ("DIFFERENCE", OperatorName::Combine(Combinator::Difference(Difference {}))),
-    (
-        "SMOOTH DIFFERENCE",
-        OperatorName::Foreign("the product of the first field and the complements of the others"),
-    ),
+    ("SMOOTH DIFFERENCE", OperatorName::SmoothDifference),
     ("BLEND", OperatorName::Combine(Combinator::Sum(Sum {}))),
     ("GRADIENT BLEND", OperatorName::Combine(Combinator::Sum(Sum {}))),
     ("RICCI BLEND", OperatorName::Ricci),
     ("FASTQUADRICPOINTSET", OperatorName::Combine(Combinator::Sum(Sum {}))),
     ("FASTQUADRATICPOINTSET", OperatorName::Combine(Combinator::Sum(Sum {}))),
-    ("PCM", OperatorName::Foreign("precise contact of two deforming bodies")),
+    ("PCM", OperatorName::Foreign("contact of two bodies, by the greatest compression over the whole model")),
     ("CACHE", OperatorName::Pass),
     ("TEXTURE", OperatorName::Pass),
-    ("TWIST", OperatorName::Twist),
-    ("TAPER", OperatorName::Foreign("a scale along one axis that changes along another")),
-    ("SHEAR", OperatorName::Foreign("a shift along one axis that changes along another")),
-    ("BEND", OperatorName::Foreign("the bend of an axis about a circle")),
+    ("TWIST", OperatorName::Warp(WarpName::Twist)),
+    ("TAPER", OperatorName::Warp(WarpName::Taper)),
+    ("SHEAR", OperatorName::Warp(WarpName::Shear)),
+    ("BEND", OperatorName::Warp(WarpName::Bend)),
 ];
 
 /// The meaning of a leaf's name.
@@ -63,8 +60,8 @@ enum LeafName {
     Triangle,
     Null,
     Instance,
-    /// A leaf that this project lacks: its name in words.
-    Foreign(&'static str),
+    /// A ball with a falloff, a radius and a strength of its own.
+    QuadricPoint,
 }
 
 const LEAVES: &[(&str, LeafName)] = &[
@@ -75,7 +72,7 @@ const LEAVES: &[(&str, LeafName)] = &[
     ("RING", LeafName::Ring),
     ("CUBE", LeafName::Cube),
     ("TRIANGLE", LeafName::Triangle),
-    ("QUADRICPOINT", LeafName::Foreign("a ball whose field falls as the square of 1 - d^2/R^2")),
+    ("QUADRICPOINT", LeafName::QuadricPoint),
     ("NULL", LeafName::Null),
     ("INSTANCE", LeafName::Instance),
 ];
@@ -172,8 +169,11 @@ impl Importer<'_> {
             return;
         };
         let unary = match operator {
-            OperatorName::Pass | OperatorName::Twist => true,
-            OperatorName::Combine(_) | OperatorName::Ricci | OperatorName::Foreign(_) => false,
+            OperatorName::Pass | OperatorName::Warp(_) => true,
+            OperatorName::Combine(_)
+            | OperatorName::Ricci
+            | OperatorName::SmoothDifference
+            | OperatorName::Foreign(_) => false,
         };
         let (id, reference, count) = (section.id, reading.reference, reading.children.len());
         if unary && count > 1 {
@@ -191,31 +191,16 @@ impl Importer<'_> {
                 Some(Meaning::Combine(Ricci { exponent }.into()))
             }
             OperatorName::Pass => Some(Meaning::Same),
-            OperatorName::Twist => self.twist(section).map(Meaning::Warp),
+            OperatorName::Warp(name) => self.warp(section, name),
+            OperatorName::SmoothDifference => {
+                self.first_colored(section);
+                Some(Meaning::SmoothDifference)
+            }
             OperatorName::Foreign(does) => {
                 self.foreign(&name, span, does);
                 None
             }
         };
-    }
-
-    /// ParsIP turns the point by `factor * height` from the first to the second of the other two axes, in the
-    /// order x, y, z. Our inverse map turns it the opposite way, right-handed about the axis; for y the other
-    /// axes are in the order z, x.
-    fn twist(&mut self, section: &Section) -> Option<Twist> {
-        let factor =
-            if section.get(Key::Factor).is_some() { self.number(section, Key::Factor)? } else { 1.0 };
-        let axis = if section.get(Key::Axis).is_some() { self.integer(section, Key::Axis)? } else { 2 };
-        match axis {
-            0 => Some(Twist { axis: Axis::X, rate: -factor }),
-            1 => Some(Twist { axis: Axis::Y, rate: factor }),
-            2 => Some(Twist { axis: Axis::Z, rate: -factor }),
-            _ => {
-                let span = section.get(Key::Axis).unwrap_or(section.span);
-                self.bad(span, Key::Axis, &axis.to_string(), "0, 1 or 2");
-                None
-            }
-        }
     }
 
     fn leaf(&mut self, section: &Section, reading: &mut Reading) {
@@ -237,7 +222,10 @@ impl Importer<'_> {
                 }
                 return;
             }
-            LeafName::Foreign(is) => return self.foreign(&name, span, is),
+            LeafName::QuadricPoint => {
+                reading.meaning = self.quadric_point(section, reading.map.is_some());
+                return;
+            }
             LeafName::Null => Some(Point { at: DVec3::ZERO }.into()),
             LeafName::Point
             | LeafName::Line
@@ -251,6 +239,32 @@ impl Importer<'_> {
         reading.meaning = skeleton.map(|skeleton| {
             let leaf = Primitive { skeleton, falloff: Falloff::Wyvill, radius: 1.0, strength };
             Meaning::Leaf { leaf, color: color.filter(|_| strength != 0.0) }
+        });
+    }
+
+    /// A point with the field `scale * (1 - d^2 / radius^2)^2`.
+    fn quadric_point(&mut self, section: &Section, is_mapped: bool) -> Option<Meaning> {
+        let at = self.tuple::<3>(section, Key::Position, 0).map_or(DVec3::ZERO, DVec3::from);
+        let radius = self.length(section, Key::Radius)?;
+        let strength = match section.get(Key::FieldScale) {
+            Some(_) => self.number(section, Key::FieldScale)?,
+            None => 1.0,
+        };
+        if is_mapped {
+            self.departs(section, "leaves out the map of a QUADRICPOINT; here it counts");
+        }
+        let color = self.tuple::<3>(section, Key::Diffused, 1);
+        let leaf = Primitive { skeleton: Point { at }.into(), falloff: Falloff::Quartic, radius, strength };
+        Some(Meaning::Leaf { leaf, color })
+    }
+
+    /// Warns of the colour of a smooth difference.
+    fn first_colored(&mut self, section: &Section) {
+        let (id, span) = (section.id, section.get(Key::OperatorType));
+        self.warnings.add(|| {
+            let message =
+                format!("the smooth difference of node {id} has the colour of its first child, cuts too");
+            Diagnostic::warning(span, message)
         });
     }
 
@@ -294,7 +308,7 @@ impl Importer<'_> {
                     .map(|key| self.needed_tuple::<3>(section, key).map(DVec3::from));
                 Triangle { a: corners[0]?, b: corners[1]?, c: corners[2]? }.into()
             }
-            LeafName::Point | LeafName::Null | LeafName::Instance | LeafName::Foreign(_) => {
+            LeafName::Point | LeafName::Null | LeafName::Instance | LeafName::QuadricPoint => {
                 Point { at: position }.into()
             }
         })

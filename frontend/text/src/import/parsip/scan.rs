@@ -57,6 +57,14 @@ keys! {
     Power = "power",
     Factor = "factor",
     Axis = "axis",
+    BaseAxis = "base axis",
+    TaperAxis = "taper axis",
+    ShearAxis = "shear axis",
+    Rate = "rate",
+    Center = "center",
+    LeftBound = "left bound",
+    RightBound = "right bound",
+    FieldScale = "scale",
 }
 
 /// The place of a value.

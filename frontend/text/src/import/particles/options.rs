@@ -1,0 +1,39 @@
+//! What is set from outside a file of particles or atoms.
+
+/// The field of a particle whose surface alone is at radius r.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub enum ParticleForm {
+    /// The soft object (Wyvill, McPheeters and Wyvill 1986) at iso 1/2: 0 from a distance of 2 r on.
+    #[default]
+    Soft,
+    /// Blinn's density of electrons (1982) at iso 1: `exp(-h (d^2 / r^2 - 1))` with this hardness h, which is
+    /// cut at 4 r. For h of 2, what is cut is below 1e-13.
+    Blinn(f64),
+}
+
+/// What is set from outside a file of particles or atoms.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct ParticleOptions {
+    /// The radius of points that have none of their own.
+    pub radius: Option<f64>,
+    /// The factor of all radii of a file: 1 if nothing is said. 0.6 gives bonds of molecules a waist.
+    pub scale: Option<f64>,
+    /// The field of a particle.
+    pub form: Option<ParticleForm>,
+    /// What the columns of a table are, in their order, instead of a head line: `x`, `y`, `z`, `radius`,
+    /// `strength`, `r`, `g`, `b`, the name of an attribute, or `-` for one to leave out.
+    pub columns: Vec<String>,
+    /// Arrays of the file that become attributes, by name.
+    pub values: Vec<String>,
+    /// Keep the molecules of water that a structure was measured with.
+    pub waters: bool,
+    /// Which frame of a trajectory is read, from 1.
+    pub frame: Option<usize>,
+}
+
+impl ParticleOptions {
+    /// Whether anything is set.
+    pub(in crate::import) fn is_set(&self) -> bool {
+        *self != Self::default()
+    }
+}

@@ -1,0 +1,115 @@
+//! The set that a model encloses: how far it reaches, how large it is, who decides where.
+
+use jbt::solid::{Measure, Solid};
+use jbt::{Box3, Query};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+use crate::error::{Refusal, refused};
+use crate::evaluator::PyEvaluator;
+use crate::mesh::{fineness, region};
+use crate::model::PyModel;
+use crate::work::CallEffort;
+
+/// The smallest and the largest corner of a box, in the world.
+type WorldCorners = ([f64; 3], [f64; 3]);
+
+#[pymethods]
+impl PyModel {
+    /// A box around the solid, in the world; `None` if it is empty. The second part says whether every side
+    /// is within the tolerance.
+    fn tight_bounds(
+        &self,
+        py: Python<'_>,
+        tolerance: f32,
+        bounds: Option<[[f64; 3]; 2]>,
+    ) -> PyResult<(Option<WorldCorners>, bool)> {
+        let compiled = self.compiled(py, None)?;
+        let origin = compiled.origin();
+        let local = region(bounds)?.map(|bounds| bounds.map(|corner| origin.rounded(corner)));
+        let found = CallEffort::quiet(py).run(move |_| -> Result<_, Refusal> {
+            Ok(Solid::of(&compiled)?.tight_bounds(local, tolerance)?)
+        })?;
+        let world = |corner: [f32; 3]| origin.world(corner.map(f64::from));
+        let outer = found.outer.map(|Box3 { low, high }| (world(low), world(high)));
+        Ok((outer, found.converged))
+    }
+
+    /// Volume, area and centre of mass: a dictionary.
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        resolution: Option<usize>,
+        cell: Option<f64>,
+        bounds: Option<[[f64; 3]; 2]>,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let compiled = self.compiled(py, None)?;
+        let origin = compiled.origin();
+        let local = region(bounds)?.map(|bounds| bounds.map(|corner| origin.rounded(corner)));
+        let settings = Measure { region: local, fineness: fineness(resolution, cell)? };
+        let effort = CallEffort { py, threads, progress };
+        let made = effort.run(move |watch| -> Result<_, Refusal> {
+            let solid = Solid::of(&compiled)?;
+            Ok(watch.run(solid.measure(&settings))?)
+        })?;
+        let dict = PyDict::new(py);
+        dict.set_item("volume", made.volume.estimate)?;
+        dict.set_item("least", made.volume.low)?;
+        dict.set_item("most", made.volume.high)?;
+        dict.set_item("area", made.area)?;
+        dict.set_item("center", made.center)?;
+        dict.set_item("cell", made.cell)?;
+        Ok(dict)
+    }
+
+    /// Who decides at points: arrays of nodes (-1 for nobody) and shares, and paths and lines of the nodes.
+    fn owner<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let view = points.as_array();
+        if view.ncols() != 3 {
+            return Err(refused(format!("points: expected the shape (n, 3), got {:?}", view.shape())));
+        }
+        let points: Vec<[f64; 3]> = view.outer_iter().map(|row| [row[0], row[1], row[2]]).collect();
+        let tree = self.checked(py)?;
+        let source = tree.diagnostics(Vec::new()).source_text().cloned();
+        let effort = CallEffort { py, threads, progress: None };
+        let found = effort.run(move |watch| -> Result<_, Refusal> {
+            let each = |point: &[f64; 3]| {
+                let found = (!watch.is_stopped()).then(|| jbt_model::owner::owner(&tree, *point)).flatten();
+                found.map(|owner| (owner.node.0, owner.share, owner.path(&tree), owner.span))
+            };
+            Ok(points.par_iter().map(each).collect::<Vec<_>>())
+        })?;
+        let leaf = found.iter().map(|one| one.as_ref().map_or(-1, |one| i64::from(one.0))).collect();
+        let share = found.iter().map(|one| one.as_ref().map_or(0.0, |one| one.1)).collect();
+        let line = |span: Option<jbt::diagnostic::Span>| {
+            source
+                .as_ref()
+                .zip(span)
+                .map_or(0, |(source, span)| source.source().position(span.start as usize).0)
+        };
+        let lines = found.iter().map(|one| one.as_ref().map_or(0, |one| line(one.3) as i64)).collect();
+        let dict = PyDict::new(py);
+        dict.set_item("leaf", PyArray1::<i64>::from_vec(py, leaf))?;
+        dict.set_item("share", PyArray1::<f64>::from_vec(py, share))?;
+        dict.set_item("line", PyArray1::<i64>::from_vec(py, lines))?;
+        let paths: Vec<Option<String>> = found.into_iter().map(|one| one.map(|one| one.2)).collect();
+        dict.set_item("path", paths)?;
+        Ok(dict)
+    }
+
+    /// What answers the field in the numbers that decide sides: as [`compile`](Self::compile) of the field.
+    fn sides(&self, py: Python<'_>) -> PyResult<PyEvaluator> {
+        let compiled = self.compiled(py, None)?;
+        let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(Query::FIELD))?;
+        Ok(PyEvaluator::new(made, self.checked(py)?))
+    }
+}

@@ -1,0 +1,123 @@
+//! USDA, the text of Universal Scene Description: one mesh below a transform, which has the origin.
+//!
+//! Numbers are the shortest that give the same f32 back. Attributes are primvars of each vertex:
+//! `displayColor`, which is linear, `st` and `primvars:name` with as many elements as the attribute is
+//! wide.
+
+use std::fmt::Display;
+use std::io::Write;
+
+use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
+use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_items};
+use crate::mesh::Mesh;
+
+/// What is usual in these files.
+pub(super) const CONVENTIONS: Conventions = Conventions {
+    extension: "usda",
+    title: "Universal Scene Description, text",
+    up: Up::Z,
+    normals: "`normals`",
+    colors: Some(Colors { place: "`displayColor`, decimals", encoding: ColorEncoding::Linear }),
+    uv: Some("`st`"),
+    attributes: Some("`primvars`, decimals"),
+    name: Some("`displayName`"),
+    far: FarMeshes::Node,
+    unit: Some(LengthUnit::Metre),
+};
+
+/// Names that are always what they are.
+const RESERVED: [&str; 2] = ["displayColor", "st"];
+
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, colors: encoding, unit, .. } = choices;
+    let axis = match up {
+        Up::Y => "Y",
+        Up::Z => "Z",
+    };
+    writeln!(out, "#usda 1.0\n(\n    defaultPrim = \"model\"\n    doc = \"jbt\"")?;
+    writeln!(out, "    metersPerUnit = {}\n    upAxis = \"{axis}\"\n)\n", unit.metres())?;
+    writeln!(out, "def Xform \"model\" (\n    kind = \"component\"\n)\n{{")?;
+    if !mesh.is_about_world() {
+        let [x, y, z] = choices.place(mesh.origin);
+        writeln!(out, "    double3 xformOp:translate = ({x}, {y}, {z})")?;
+        writeln!(out, "    uniform token[] xformOpOrder = [\"xformOp:translate\"]")?;
+    }
+    let name = choices.name.map_or_else(String::new, |name| {
+        // Line ends and quotes would end it.
+        let name = name.replace(['\\', '"'], "_").replace(char::is_control, "_");
+        format!(" (\n        displayName = \"{name}\"\n    )")
+    });
+    writeln!(out, "    def Mesh \"mesh\"{name}\n    {{")?;
+    let corner = |pick: fn(f32, f32) -> f32| {
+        let all = mesh.positions.iter().map(|&position| choices.place(position));
+        all.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis]))).unwrap_or_default()
+    };
+    let tuple = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
+    writeln!(out, "        float3[] extent = [{}, {}]", tuple(corner(f32::min)), tuple(corner(f32::max)))?;
+    writeln!(out, "        uniform token subdivisionScheme = \"none\"")?;
+    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    list(out, "int[] faceVertexCounts", triangles, |_| 3, "")?;
+    list(
+        out,
+        "int[] faceVertexIndices",
+        triangles,
+        |triangle| {
+            let [a, b, c] = mesh.triangles[triangle];
+            format!("{a}, {b}, {c}")
+        },
+        "",
+    )?;
+    list(out, "point3f[] points", vertices, |vertex| tuple(choices.place(mesh.positions[vertex])), "")?;
+    list(out, "normal3f[] normals", vertices, |vertex| tuple(choices.place(mesh.normals[vertex])), EACH)?;
+    if let Some(colors) = colors(mesh) {
+        let color = |vertex: usize| tuple(colors[vertex].map(|channel| encoding.encode(channel)));
+        list(out, "color3f[] primvars:displayColor", vertices, color, EACH)?;
+    }
+    if let Some(uvs) = uvs(mesh) {
+        let uv = |vertex: usize| format!("({}, {})", finite(uvs[2 * vertex]), finite(uvs[2 * vertex + 1]));
+        list(out, "texCoord2f[] primvars:st", vertices, uv, EACH)?;
+    }
+    for NamedAttribute { names, attribute } in others(mesh, &RESERVED, spell) {
+        let (width, name) = (attribute.width, format!("float[] primvars:{}", names[0]));
+        let values = |vertex: usize| {
+            let values = &attribute.values[width * vertex..width * (vertex + 1)];
+            values.iter().map(|&value| finite(value).to_string()).collect::<Vec<_>>().join(", ")
+        };
+        let about = format!(
+            " (\n            elementSize = {width}\n            interpolation = \"vertex\"\n        )"
+        );
+        list(out, &name, vertices, values, if width == 1 { EACH } else { &about })?;
+    }
+    writeln!(out, "    }}\n}}")?;
+    Ok(())
+}
+
+/// What a list has for each vertex.
+const EACH: &str = " (\n            interpolation = \"vertex\"\n        )";
+
+/// A list of items.
+fn list<T: Display>(
+    out: &mut impl Write,
+    name: &str,
+    count: usize,
+    item: impl Fn(usize) -> T + Sync,
+    about: &str,
+) -> Result<(), WriteError> {
+    write!(out, "        {name} = [")?;
+    write_items(out, count, |index, bytes| {
+        let between = match index {
+            0 => "",
+            _ if index % 8 == 0 => ",\n            ",
+            _ => ", ",
+        };
+        write!(bytes, "{between}{}", item(index))
+    })?;
+    writeln!(out, "]{about}")?;
+    Ok(())
+}
+
+/// One name, which begins with no digit.
+fn spell(stem: &str, _: usize) -> Vec<String> {
+    let is_number = stem.starts_with(|first: char| first.is_ascii_digit());
+    vec![if is_number { format!("_{stem}") } else { stem.to_owned() }]
+}
