@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
+use crate::overlaps::PartFindings;
 use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 
@@ -26,7 +27,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     let mut told = Findings::default();
     for path in &arguments.scenes {
         let scene = SceneArguments { path: path.clone(), options: arguments.options.clone() };
-        let checked = check(&scene, quiet || arguments.json);
+        let checked = check(&scene, arguments, quiet);
         if arguments.json {
             told.add(path, &checked);
         }
@@ -52,15 +53,20 @@ struct Checked {
     scene: LoadedScene,
     tree: CheckedTree,
     instances: u64,
+    /// What is known of its parts, if that was asked for.
+    parts: Option<PartFindings>,
 }
 
-fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = LoadedScene::load(arguments)?;
-    scene.warn(quiet);
+fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = LoadedScene::load(path)?;
+    scene.warn(quiet || arguments.json);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
     let evaluator = scene.evaluator(&Compiler::for_engine(Engine::Scalar).compile(&tree), Query::ALL)?;
-    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point() })
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let parts = arguments.overlaps.then(compare).transpose()?;
+    let instances = evaluator.evaluations_per_point();
+    Ok(Checked { scene, tree, instances, parts })
 }
 
 /// What has been found out about the files so far.
@@ -120,6 +126,7 @@ impl Checked {
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
+            "overlaps": self.parts.as_ref().map(PartFindings::json),
         })
     }
 
@@ -142,6 +149,7 @@ impl Checked {
         }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
+        out.push_str(&self.parts.as_ref().map_or_else(String::new, PartFindings::text));
         out
     }
 }

@@ -39,6 +39,7 @@
 mod brick;
 mod cell;
 mod check;
+mod components;
 mod crossing;
 mod divide;
 mod error;
@@ -48,6 +49,7 @@ mod lattice;
 pub(crate) mod local;
 mod measure;
 mod options;
+mod parts;
 mod pull;
 mod report;
 mod sample;
@@ -60,11 +62,13 @@ mod vertex;
 use jbt_ir::limits::MAX_BRICKS;
 
 pub use check::{Defect, check_manifold, is_closed};
+pub use components::MeshComponent;
 pub use error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
 pub use field::{Field, FieldWork};
-pub use indexed::{Attribute, Mesh};
+pub use indexed::{Attribute, Mesh, MeshPart};
 pub use lattice::{Lattice, LatticeError};
 pub use options::Options;
+pub use parts::MeshPiece;
 pub use report::{MAX_NEAR, MeshReport, Sides, ThinReport};
 
 #[cfg(feature = "export")]
