@@ -1,4 +1,4 @@
-//! Every input that ever failed, and a few seeds for each target, on any Rust: `fuzz/regressions/<target>/`.
+//! Every input that ever failed (`fuzz/regressions/<target>/`), seeds, noise and random models, on any Rust.
 
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use jbt_targets::targets;
+use jbt_targets::{Target, targets};
 
 /// What one input may take, on a loaded machine without optimisation of the tests' own code.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -29,10 +29,11 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 fn what_ever_failed_holds() {
     let targets = targets();
     let mut count = 0;
-    for own in entries(&folder().join("regressions")).into_iter().filter(|path| path.is_dir()) {
+    let folders = ["regressions", "seeds"].map(|name| entries(&folder().join(name)));
+    for own in folders.into_iter().flatten().filter(|path| path.is_dir()) {
         let name = own.file_name().expect("a folder").to_string_lossy().into_owned();
         let target = targets.iter().find(|target| target.name == name);
-        let target = target.unwrap_or_else(|| panic!("regressions/{name} is the folder of no target"));
+        let target = target.unwrap_or_else(|| panic!("{} is the folder of no target", own.display()));
         for path in entries(&own) {
             let begin = Instant::now();
             println!("{}", path.display());
@@ -43,7 +44,7 @@ fn what_ever_failed_holds() {
         }
     }
     println!("{count} inputs");
-    assert!(count > 0, "there are inputs that have failed once");
+    assert!(count > 20, "{count} inputs");
 }
 
 #[test]
@@ -54,6 +55,19 @@ fn targets_take_nothing_and_noise() {
         for length in [1, 2, 17, 18, 19, 400] {
             let noise: Vec<u8> = (0..length).map(|_| rng.u8(..)).collect();
             target.run(&noise);
+        }
+    }
+}
+
+/// Random models: `JBT_TARGET_MODELS` says how many for each target that compiles.
+#[test]
+fn random_models_hold() {
+    let count = jbt_testkit::scene::count("JBT_TARGET_MODELS", 40);
+    for target in targets().into_iter().filter(Target::compiles) {
+        for seed in 0..count {
+            let mut rng = fastrand::Rng::with_seed(seed);
+            let bytes: Vec<u8> = (0..18).map(|_| rng.u8(..)).collect();
+            target.run(&bytes);
         }
     }
 }
