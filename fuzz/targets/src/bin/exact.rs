@@ -230,14 +230,16 @@ fn programs(op: Op, shift: u32) -> Vec<BoundProgram> {
 
 /// What the reference gives, as planes of reals.
 fn reference(op: Op, shift: u32, inputs: [f32; 3]) -> [f32; 2] {
-    let operand = |(plane, type_): (usize, &Type)| match type_ {
-        _ if is_shift(op) && plane == 1 => Any::Bits(shift),
-        Type::Real => Any::Real(inputs[plane]),
-        Type::Mask => Any::Mask(inputs[plane] < 0.25),
-        Type::Bits => Any::Bits(inputs[plane].to_bits()),
-    };
-    let operands: Vec<Any<Scalar>> = op.operands().iter().enumerate().map(operand).collect();
-    match apply(&mut Scalar, op, &operands) {
+    let mut operands: [Any<Scalar>; 3] = [Any::Real(0.0); 3];
+    for (plane, type_) in op.operands().iter().enumerate() {
+        operands[plane] = match type_ {
+            _ if is_shift(op) && plane == 1 => Any::Bits(shift),
+            Type::Real => Any::Real(inputs[plane]),
+            Type::Mask => Any::Mask(inputs[plane] < 0.25),
+            Type::Bits => Any::Bits(inputs[plane].to_bits()),
+        };
+    }
+    match apply(&mut Scalar, op, &operands[..op.operands().len()]) {
         Any::Real(real) => [real, 0.0],
         Any::Mask(mask) => [if mask { 1.0 } else { -0.0 }, 0.0],
         Any::Bits(bits) => [bits & 0xFFFF, bits >> 16].map(|half| f32::from_bits(half | 0x3F80_0000)),
