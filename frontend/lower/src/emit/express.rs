@@ -99,7 +99,7 @@ impl Emitter<'_> {
             _ => Vec::new(),
         };
         self.builder.set_origin(Origin::SHARED);
-        self.answers.push(Answer { field, groups });
+        self.answers.push(Answer::new(field, groups));
     }
 
     /// Whether what is emitted now is the operand of an operator that keeps it within bounds.
