@@ -1,8 +1,8 @@
 """Workers of Dask on this machine, compared with one process: bytes, seconds, memory.
 
-    python benches/workers.py hero [RESOLUTION]          the octopus, 512 cells: 1, 2 and 4 workers
-    python benches/workers.py particles [COUNT CELLS]    a million particles of an array of Dask at 513^3 points
-    python benches/workers.py files [COUNT CELLS]        2 x 10^7 particles that workers read from files, into parts
+    python benches/workers.py hero [RESOLUTION]         the octopus, 512 cells, by 1, 2 and 4 workers
+    python benches/workers.py particles [COUNT CELLS]   a million particles of a dask.array, 512 cells
+    python benches/workers.py files [COUNT CELLS]       2 x 10^7 particles in files, into parts
 
 Starting the workers does not count. Each line says whether the bytes are those of one process.
 """
@@ -44,9 +44,12 @@ def on_workers(count: int, work: Callable[[], Any]) -> tuple[float, Any]:
     """Seconds on so many workers of one thread, which have compiled before."""
     from distributed import Client, LocalCluster
 
-    with LocalCluster(
-        n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50
-    ) as cluster, Client(cluster) as client:
+    with (
+        LocalCluster(
+            n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        Client(cluster) as client,
+    ):
         client.run(lambda: __import__("jbt.dask"))
         return timed(work)
 
@@ -122,7 +125,7 @@ def files(count: int = 20_000_000, cells: int = 512) -> None:
 
 def main() -> None:
     warnings.simplefilter("ignore")
-    words = {"hero": hero, "particles": particles, "files": files}
+    words: dict[str, Callable[..., None]] = {"hero": hero, "particles": particles, "files": files}
     word, *numbers = sys.argv[1:] or ["hero"]
     words[word](*(int(number) for number in numbers))
 

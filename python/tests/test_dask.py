@@ -78,7 +78,8 @@ def test_hero(hero: jbt.Model, client: Any) -> None:
     told: list[float] = []
     made = jbt.dask.mesh(hero, resolution=RESOLUTION, bricks=32, client=client, progress=told.append)
     same(made, whole)
-    assert told[-1] == 1.0 and told == sorted(told)
+    assert told[-1] == 1.0
+    assert told == sorted(told)
     assert made.info["levels"] == [_jbt.cpu_level()]
     # Bricks as large as they are best.
     same(jbt.dask.mesh(hero, resolution=RESOLUTION), whole)
@@ -95,14 +96,15 @@ def test_models(client: Any) -> None:
 def test_what_leaves_the_region_is_open(client: Any) -> None:
     ball = jbt.point(surface_radius=1)
     region = ((-0.8, -2, -2), (2, 2, 0.3))
-    with pytest.warns(jbt.OpenMeshWarning, match=r"at -x \+z"):
+    with pytest.warns(jbt.OpenMeshWarning, match=r"at its sides -x \+z"):
         whole = ball.mesh(cell=0.05, region=region, thin=False)
-    with pytest.warns(jbt.OpenMeshWarning, match=r"at -x \+z"):
+    with pytest.warns(jbt.OpenMeshWarning, match=r"at its sides -x \+z"):
         made = jbt.dask.mesh(ball, 0.05, region=region, bricks=32)
     same(made, whole)
     assert not made.closed
     nothing = jbt.dask.mesh(ball, 0.05, region=((2, 2, 2), (3, 3, 3)))
-    assert len(nothing.faces) == 0 and nothing.closed
+    assert len(nothing.faces) == 0
+    assert nothing.closed
     with pytest.raises(ValueError, match="unbounded"):
         jbt.dask.mesh(jbt.expression(jbt.x), 0.1)
     with pytest.raises(ValueError, match="empty"):
@@ -126,7 +128,9 @@ def test_particles_in_arrays(client: Any, strengths: bool) -> None:
     def chunked(values: Any) -> Any:
         return array.from_array(values, chunks=(1000, 3)[: values.ndim]) if np.ndim(values) else values
 
-    cloud = jbt.dask.points(*map(chunked, [xyz]), radius=chunked(radius), color=chunked(color), strength=chunked(strength))
+    cloud = jbt.dask.points(
+        *map(chunked, [xyz]), radius=chunked(radius), color=chunked(color), strength=chunked(strength)
+    )
     same(jbt.dask.mesh(cloud, 0.025, bricks=32), whole)
     with pytest.raises(ValueError, match="chunks as those of xyz"):
         jbt.dask.points(chunked(xyz), radius=array.from_array(radius, chunks=500))
@@ -144,7 +148,9 @@ def test_particles_in_files_become_parts(client: Any, tmp_path: Path) -> None:
     whole = jbt.points(xyz, radius=radius).mesh(cell=0.03, thin=False)
     cloud = jbt.dask.files(paths, allow_files=tmp_path / "in", chunk=900)
     parts = jbt.dask.mesh(cloud, 0.03, bricks=32, folder=tmp_path / "out")
-    assert len(parts) > 8 and parts.triangles == len(whole.faces) and parts.closed
+    assert len(parts) > 8
+    assert parts.triangles == len(whole.faces)
+    assert parts.closed
     same(parts.mesh(), whole)
     same(jbt.dask.read(tmp_path / "out").mesh(), whole)
     with pytest.raises(PermissionError, match="allow_files"):
@@ -185,12 +191,15 @@ def test_a_full_disk_is_named(hero: jbt.Model, client: Any, tmp_path: Path) -> N
 
     client.run(limit, 20_000)
     try:
-        with pytest.raises(jbt.dask.BrickError, match=r"octopus: the brick \(\d, \d, \d\) has failed") as caught:
+        with pytest.raises(
+            jbt.dask.BrickError, match=r"octopus: the brick \(\d, \d, \d\) has failed"
+        ) as caught:
             jbt.dask.mesh(hero, resolution=64, folder=tmp_path, retries=1, name="octopus")
     finally:
         client.run(limit, resource.RLIM_INFINITY)
     assert isinstance(caught.value.__cause__, OSError)
-    assert caught.value.scene == "octopus" and caught.value.place is not None
+    assert caught.value.scene == "octopus"
+    assert caught.value.place is not None
     # Neither an index nor any part of a part.
     assert not (tmp_path / "index.json").exists()
     assert not list(tmp_path.glob(".jbt-*"))
@@ -208,9 +217,13 @@ def test_cancelling(hero: jbt.Model, client: Any) -> None:
     timer = threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     begun = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
+
+    def work() -> None:
         while time.monotonic() < begun + 60:
             jbt.dask.mesh(hero, resolution=RESOLUTION, bricks=32)
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
     timer.cancel()
 
 
@@ -222,7 +235,9 @@ def test_samples(hero: jbt.Model, client: Any, tmp_path: Path) -> None:
     assert made.numblocks == tuple(-(-count // 32) for count in whole.shape)
     assert made.compute().tobytes() == np.ascontiguousarray(whole.field).tobytes()
     made.to_zarr(str(tmp_path / "field.zarr"))
-    assert zarr.open_array(tmp_path / "field.zarr")[:].tobytes() == np.ascontiguousarray(whole.field).tobytes()
+    assert (
+        zarr.open_array(tmp_path / "field.zarr")[:].tobytes() == np.ascontiguousarray(whole.field).tobytes()
+    )
     grid = jbt.dask.sample_grid(hero, resolution=40, bricks=32, gradient=True, attributes=True)
     expected = hero.sample(resolution=40, gradient=True, attributes=True)
     assert (grid.names, grid.groups, grid.origin) == (expected.names, expected.groups, expected.origin)
@@ -279,10 +294,10 @@ def test_strangers_bytes_are_refused(client: Any) -> None:
     assert _jbt.Shape(shape).block(rows, lattice, 32, [0, 0, 0], 8, 1)
     with pytest.raises(ValueError, match="there is no brick"):
         _jbt.Shape(shape).block(rows, lattice, 32, [1, 0, 0], 8, 1)
+    wide = _jbt.Lattice([-2, -1, -1], 0.1, [20, 20, 20])
     with pytest.raises(ValueError, match="another box"):
-        wide = _jbt.Lattice([-2, -1, -1], 0.1, [20, 20, 20])
         _jbt.Shape(shape).block(rows, wide, 32, [0, 0, 0], 8, 1)
-    with pytest.raises(ValueError, match="end too soon"):
+    with pytest.raises(ValueError, match="byte .* are said to follow"):
         _jbt.Shape(shape[:-1])
     with pytest.raises(ValueError, match="byte"):
         _jbt.Shape(shape).block(rows[:-3], lattice, 32, [0, 0, 0], 8, 1)

@@ -55,7 +55,7 @@ fn what_leaves_the_region_is_open() {
 fn noise() {
     let text = "expression within (-1 -1 -1) to (1 1 1) { sin(61 * x + 3 * sin(47 * y)) * sin(53 * y + z) * sin(59 * z + 40 * x) + 0.5 }";
     let tree = tree(text);
-    let made = check("noise", &tree, &settings(Some(Box3::new([-1.0; 3], [1.0; 3])), 66), 32);
+    let made = check("noise", &tree, &settings(Some(Box3::new([-1.0; 3], [1.0; 3])), 44), 32);
     assert!(made.iter().map(|block| block.below.len()).sum::<usize>() > 1000);
 }
 

@@ -4,9 +4,9 @@
 >>> import jbt.dask  # doctest: +SKIP
 >>> mesh = jbt.dask.mesh(model, cell=0.01)  # doctest: +SKIP
 
-`docs/dask.md` tells how. What is shipped is plain bytes, which workers check: the programs of the whole model,
-once, and for each brick the rows that reach it. Every worker compiles these programs once, and results have the
-bits of one machine.
+`docs/dask.md` tells how. What is shipped is plain bytes, which workers check: the programs of the whole
+model, once, and for each brick the rows that reach it. Every worker compiles these programs once, and results
+have the bits of one machine.
 """
 
 from __future__ import annotations

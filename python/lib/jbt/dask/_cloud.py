@@ -43,9 +43,7 @@ class Cloud:
         return made
 
 
-def points(
-    xyz: Any, *, radius: Any, color: Any = None, strength: Any = 1.0, falloff: str = "soft"
-) -> Cloud:
+def points(xyz: Any, *, radius: Any, color: Any = None, strength: Any = 1.0, falloff: str = "soft") -> Cloud:
     """Particles from arrays of Dask: the sum that `jbt.points` makes of all of them, in their order.
 
     Args:
@@ -120,7 +118,9 @@ def files(
         if len(shape) != 2 or shape[1] not in (3, 4):
             raise ValueError(f"{path}: expected the shape (n, 3) or (n, 4), got {shape}")
         widths.add(shape[1])
-        chunks += [read(path, root, at, min(at + chunk, shape[0]), common) for at in range(0, shape[0], chunk)]
+        chunks += [
+            read(path, root, at, min(at + chunk, shape[0]), common) for at in range(0, shape[0], chunk)
+        ]
     if len(widths) > 1:
         raise ValueError("paths: some files have radii and others have none")
     if widths == {3} and radius is None:
@@ -181,7 +181,9 @@ class CloudBricks:
             return None
         first, spacing, cells = self.lattice
         chosen = _work.some(farthest, np.concatenate(kinds))
-        far = np.asarray(self.origin) + np.asarray(first) - 4 * (spacing * max(cells) + chosen["radius"].max())
+        far = (
+            np.asarray(self.origin) + np.asarray(first) - 4 * (spacing * max(cells) + chosen["radius"].max())
+        )
         return {**chosen, "xyz": np.broadcast_to(far, (2, 3)).copy()}
 
     def _size(self, bricks: int | None) -> None:
@@ -214,7 +216,9 @@ class CloudBricks:
         if reach == 8:
             parts = [submit(_work.pick, self.cuts[n], number, pure=False) for n in self.where[number]]
         else:
-            parts = [submit(_work.pick_near, chunk, number, *where, reach, pure=False) for chunk in self.chunks]
+            parts = [
+                submit(_work.pick_near, chunk, number, *where, reach, pure=False) for chunk in self.chunks
+            ]
         return submit(
             _work.cloud_brick,
             self.shared,

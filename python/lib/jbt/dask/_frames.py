@@ -44,8 +44,8 @@ def frames(
     Args:
         files: arrays of NumPy (`.npy`) of the shape (n, 3) for places or (n, 4) for places and radii; or any
             files that `jbt.load` reads. Workers read them.
-        folder: where workers write, each file whole or not at all. Beside each is a small file `.json` with the
-            hash of what it was made of, and of what it is.
+        folder: where workers write, each file whole or not at all. Beside each is a small file `.json` with
+            the hash of what it was made of, and of what it is.
         allow_files: the folder below which workers may open files.
         cell, resolution, region: as for `Model.mesh`. For a sequence, a cell and a region keep meshes alike.
         radius, color: of particles in arrays, as for `jbt.points`.

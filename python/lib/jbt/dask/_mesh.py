@@ -75,8 +75,8 @@ def mesh(
     Args:
         model: a model; or particles that no machine has all of, as `points` and `files` make them.
         cell, resolution, region: as for `Model.mesh`.
-        bricks: cells along the edge of a brick, a power of two from 32 on. As a rule so many that every thread
-            has a few bricks, and that a brick fits into a worker's memory.
+        bricks: cells along the edge of a brick, a power of two from 32 on. As a rule so many that every
+            thread has a few bricks, and that a brick fits into a worker's memory.
         folder: where workers write the parts, on a file system that they share. The result is then `Parts`,
             and the client gets no vertices.
         client: a `distributed.Client`; as a rule the present one.
@@ -95,7 +95,9 @@ def mesh(
     elif isinstance(model, Model):
         source = _ModelBricks(model, cell, resolution, _region(region), bricks, found, retries)
     else:
-        raise TypeError(f"model: expected a jbt.Model, or what jbt.dask.points or jbt.dask.files make, got {model!r}")
+        raise TypeError(
+            f"model: expected a jbt.Model, or what jbt.dask.points or jbt.dask.files make, got {model!r}"
+        )
     results: dict[Place, dict[str, Any]] = {}
     with watcher(progress, "mesh") as told:
 
@@ -139,10 +141,14 @@ def _joined(blocks: list[bytes], facts: dict[str, Any], model: Model | Cloud) ->
             made["up"], made["handed"] = model.orientation
             for group in model.groups:
                 made["attributes"][group.name] = np.empty((0, len(group.default)), np.float32)
-    whole = _mesh.of_native({**made, **{key: facts[key] for key in facts if key not in ("origin", "spacing")}})
+    whole = _mesh.of_native(
+        {**made, **{key: facts[key] for key in facts if key not in ("origin", "spacing")}}
+    )
     if not whole.closed:
         warnings.warn(
-            f"the region cuts the surface at {whole.cut_sides}: the mesh is open", OpenMeshWarning, stacklevel=3
+            f"the region cuts the surface at its sides {whole.cut_sides}: the mesh is open there",
+            OpenMeshWarning,
+            stacklevel=3,
         )
     return whole
 

@@ -23,8 +23,8 @@ class Parts:
 
     Attributes:
         folder: where the parts are.
-        index: what `index.json` says: the lattice, and of each part its file, its SHA-256, where it is, and how
-            many vertices and triangles it has.
+        index: what `index.json` says: the lattice, and of each part its file, its SHA-256, where it is, and
+            how many vertices and triangles it has.
     """
 
     folder: Path
@@ -82,7 +82,11 @@ def read(folder: str | PathLike[str]) -> Parts:
     """
     where = Path(folder)
     index = json.loads((where / INDEX).read_text())
-    if not isinstance(index, dict) or index.get("jbt_parts") != VERSION or not isinstance(index.get("parts"), list):
+    if (
+        not isinstance(index, dict)
+        or index.get("jbt_parts") != VERSION
+        or not isinstance(index.get("parts"), list)
+    ):
         raise ValueError(f"{where / INDEX}: expected an index of version {VERSION}")
     for part in index["parts"]:
         if Path(part["file"]).name != part["file"]:

@@ -14,7 +14,7 @@ Place = tuple[int, int, int]
 
 # Edges of bricks that are tried where nobody says one, in cells.
 EDGES = (512, 256, 128, 64, 32)
-# Memory for a box of 32 cells along an edge that the surface crosses, in bytes: its field, its vertices with
+# Memory for a box of 32 cells along an edge that the surface crosses: its field, its vertices with
 # their attributes, and its triangles, twice while they are written.
 BOX_BYTES = 2 << 20
 # The part of a worker's memory for one of its tasks at once.
@@ -68,15 +68,17 @@ def workers(client: Client) -> tuple[int, int]:
         client.wait_for_workers(1)
         known = client.scheduler_info(n_workers=-1)["workers"].values()
     threads = sum(worker["nthreads"] for worker in known)
-    memory = [worker["memory_limit"] / max(1, worker["nthreads"]) for worker in known if worker["memory_limit"]]
+    memory = [
+        worker["memory_limit"] / max(1, worker["nthreads"]) for worker in known if worker["memory_limit"]
+    ]
     return threads, int(SHARE * min(memory, default=8 << 30))
 
 
 def edge_of(
     given: int | None, boxes: dict[Place, int], threads: int, memory: int, row_bytes: Callable[[int], int]
 ) -> int:
-    """The edge of bricks: the largest with which every thread has a few, and with which the heaviest fits into
-    the memory of a task.
+    """The edge of bricks: the largest with which every thread has a few, and with which the heaviest fits
+    into the memory of a task.
 
     Args:
         given: what the user says.
@@ -113,7 +115,9 @@ def cancelling(client: Client, futures: dict[Future, Any]) -> Iterator[None]:
 class Window:
     """Tasks of bricks: as many on their way as keep all workers busy."""
 
-    def __init__(self, client: Client, scene: str, retries: int, told: Callable[[float], object] | None) -> None:
+    def __init__(
+        self, client: Client, scene: str, retries: int, told: Callable[[float], object] | None
+    ) -> None:
         self.client = client
         self.scene = scene
         self.retries = retries
@@ -154,7 +158,7 @@ class Window:
             fill()
             while running:
                 future = next(completed)
-                place, weight, again = running.pop(future)
+                place, weight, _ = running.pop(future)
                 try:
                     result = future.result()
                 except Exception as error:

@@ -42,9 +42,15 @@ def sweep(
         raise ValueError(f"parameters: the model has no {', '.join(unknown)}; it has {known}")
     words = what if callable(what) else [what] if isinstance(what, str) else list(what)
     if not callable(words):
-        wrong = [word for word in words if word.startswith("_") or not isinstance(getattr(Model, word, None), property)]
+        wrong = [
+            word
+            for word in words
+            if word.startswith("_") or not isinstance(getattr(Model, word, None), property)
+        ]
         if wrong:
-            raise ValueError(f"what: expected properties of a model, as volume, area or bounds, got {wrong[0]!r}")
+            raise ValueError(
+                f"what: expected properties of a model, as volume, area or bounds, got {wrong[0]!r}"
+            )
     parts = partitions or min(len(rows), 100)
     text = str(model)
     return bag.from_sequence(rows, npartitions=parts).map(_measured, text, words)

@@ -53,7 +53,7 @@ def brick(
         "bytes": len(made),
         "shipped": len(rows),
     }
-    if folder is None or not triangles and not vertices:
+    if folder is None or not (triangles or vertices):
         return {**facts, "block": made}
     name = "brick-{}-{}-{}.jbtblock".format(*place)
     write_whole(Path(folder) / name, made)
@@ -105,7 +105,9 @@ def npy_shape(path: str, root: str) -> tuple[int, ...]:
 
 def given(xyz: Any, radius: Any, color: Any, strength: Any, falloff: str) -> Columns:
     """Particles from arrays."""
-    return checked({"xyz": xyz, "radius": radius, "color": color, "strength": strength, "falloff": falloff}, "xyz")
+    return checked(
+        {"xyz": xyz, "radius": radius, "color": color, "strength": strength, "falloff": falloff}, "xyz"
+    )
 
 
 def checked(columns: Columns, name: str) -> Columns:
@@ -157,14 +159,18 @@ def model_of(columns: Columns, each: tuple[str, ...] = ()) -> Model:
     """The model of particles. Columns in `each` have a number for every particle, whatever these are."""
     count = len(columns["xyz"])
     wide = dict(columns)
-    for name in each:
-        wide[name] = np.broadcast_to(wide[name], (count, *wide[name].shape[1:]))
+    for name in ("radius", "strength", "color"):
+        values = wide[name]
+        if name in each:
+            wide[name] = np.broadcast_to(values, (count, *values.shape[1:]))
+        elif values is not None and len(values) == 1:
+            wide[name] = values[0]
     return points(wide.pop("xyz"), **wide)
 
 
 def cloud_facts(columns: Columns, cell: float | None) -> dict[str, Any]:
-    """What the client has to know of a chunk: how many there are, those that reach farthest, and which columns
-    differ."""
+    """What the client has to know of a chunk: how many there are, those that reach farthest, and which
+    columns differ."""
     xyz, radius = columns["xyz"], columns["radius"]
     count = len(xyz)
     facts: dict[str, Any] = {"count": count}
@@ -176,8 +182,8 @@ def cloud_facts(columns: Columns, cell: float | None) -> dict[str, Any]:
     facts["first"] = {n: columns[n][:1].tolist() for n in ("radius", "strength") if len(columns[n])}
     if not count:
         return facts
-    ends = [at(side) for side in (xyz - radius[:, None], xyz + radius[:, None]) for at in
-            ((lambda s: s.argmin(axis=0)), (lambda s: s.argmax(axis=0)))]
+    low, high = xyz - radius[:, None], xyz + radius[:, None]
+    ends = [low.argmin(axis=0), low.argmax(axis=0), high.argmin(axis=0), high.argmax(axis=0)]
     chosen = {int(index) for end in ends for index in end}
     strength = np.broadcast_to(columns["strength"], (count,))
     for kind in (strength == 1.0, strength != 1.0):
@@ -191,8 +197,8 @@ def cloud_facts(columns: Columns, cell: float | None) -> dict[str, Any]:
 def places_of(
     columns: Columns, lattice: LatticeParts, origin: list[float], edge: int, reach: int
 ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """For each brick that a particle reaches, the particle and the brick: sorted by bricks, particles ascending.
-    A few more than those that reach it."""
+    """For each brick that a particle reaches, the particle and the brick: sorted by bricks, particles
+    ascending. A few more than those that reach it."""
     first, spacing, cells = lattice
     bricks = np.array([-(-count // edge) for count in cells])
     low = columns["xyz"] - (np.asarray(origin) + np.asarray(first))
@@ -216,13 +222,16 @@ def places_of(
     return particles[order], number[order]
 
 
-def cut(columns: Columns, lattice: LatticeParts, origin: list[float], edge: int, reach: int) -> dict[int, Columns]:
+def cut(
+    columns: Columns, lattice: LatticeParts, origin: list[float], edge: int, reach: int
+) -> dict[int, Columns]:
     """The particles of a chunk by brick."""
     particles, numbers = places_of(columns, lattice, origin, edge, reach)
     keys, starts = np.unique(numbers, return_index=True)
     ends = [*starts[1:], len(numbers)]
     return {
-        int(key): some(columns, particles[start:end]) for key, start, end in zip(keys, starts, ends, strict=True)
+        int(key): some(columns, particles[start:end])
+        for key, start, end in zip(keys, starts, ends, strict=True)
     }
 
 
@@ -267,7 +276,9 @@ def cloud_rows(
         columns = joined([columns, kinds])
     source = _jbt.RowSource(model_of(columns, each).with_origin(origin)._native, None)
     if source.shape() != shape:
-        raise RuntimeError("the particles of a brick have another program than the whole: a defect of jbt.dask")
+        raise RuntimeError(
+            "the particles of a brick have another program than the whole: a defect of jbt.dask"
+        )
     return source.rows(*box)[0]
 
 
@@ -304,11 +315,14 @@ def sample(
     cells = lattice[2]
     # A lattice has a cell at least: of a single layer of points the one below is taken too.
     single = [count == 1 for count in points_]
-    begin = [at - 1 if one and at + 1 > last else at for at, one, last in zip(first, single, cells, strict=True)]
+    begin = [
+        at - 1 if one and at + 1 > last else at for at, one, last in zip(first, single, cells, strict=True)
+    ]
     count = [max(1, points - 1) for points in points_]
     _, planes = SHAPES(shape).sample(rows, query, lattice_of(lattice), begin, count, 1)
     cut_ = tuple(
-        slice(at - start, at - start + points) for at, start, points in zip(first, begin, points_, strict=True)
+        slice(at - start, at - start + points)
+        for at, start, points in zip(first, begin, points_, strict=True)
     )
     return [np.ascontiguousarray(plane[cut_]) for plane in planes]
 
