@@ -1,8 +1,8 @@
 """Workers of Dask on this machine, compared with one process: bytes, seconds, memory.
 
-    python benches/workers.py hero [RESOLUTION]         the octopus, 512 cells, by 1, 2 and 4 workers
-    python benches/workers.py particles [COUNT CELLS]   a million particles of a dask.array, 512 cells
-    python benches/workers.py files [COUNT CELLS]       2 x 10^7 particles in files, into parts
+    python benches/workers.py hero [RESOLUTION] [WORKERS]        the octopus, 512 cells; 1, 2, 4 workers
+    python benches/workers.py particles [COUNT CELLS] [WORKERS]  a million particles of an array
+    python benches/workers.py files [COUNT CELLS]                2 x 10^7 particles in files, into parts
 
 Starting the workers does not count. Each line says whether the bytes are those of one process.
 """
@@ -54,12 +54,12 @@ def on_workers(count: int, work: Callable[[], Any]) -> tuple[float, Any]:
         return timed(work)
 
 
-def table(name: str, whole: Callable[[], jbt.Mesh], parts: Callable[[], jbt.Mesh]) -> None:
+def table(name: str, whole: Callable[[], jbt.Mesh], parts: Callable[[], jbt.Mesh], only: int) -> None:
     seconds, mesh = timed(whole)
     wanted = digest(mesh)
     print(f"{name}: {mesh}\n  in one process {seconds:.1f} s")
     first = 0.0
-    for count in (1, 2, 4):
+    for count in (only,) if only else (1, 2, 4):
         took, made = on_workers(count, parts)
         first = first or took
         same = "the same bytes" if digest(made) == wanted else "OTHER BYTES"
@@ -71,16 +71,17 @@ def table(name: str, whole: Callable[[], jbt.Mesh], parts: Callable[[], jbt.Mesh
         )
 
 
-def hero(resolution: int = 512) -> None:
+def hero(resolution: int = 512, only: int = 0) -> None:
     model = jbt.load(ROOT / "examples" / "hero.jbt")
     table(
         f"the hero at {resolution}",
         lambda: model.mesh(resolution=resolution, thin=False),
         lambda: jbt.dask.mesh(model, resolution=resolution),
+        only,
     )
 
 
-def particles(count: int = 1_000_000, cells: int = 512) -> None:
+def particles(count: int = 1_000_000, cells: int = 512, only: int = 0) -> None:
     from dask import array
 
     xyz = np.random.default_rng(1).uniform(-1, 1, (count, 3))
@@ -94,6 +95,7 @@ def particles(count: int = 1_000_000, cells: int = 512) -> None:
         f"{count:,} particles at {cells}",
         lambda: jbt.points(xyz, radius=radius).mesh(resolution=cells, thin=False),
         parts,
+        only,
     )
 
 

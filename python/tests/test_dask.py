@@ -307,9 +307,9 @@ def test_bricks_fit_into_memory() -> None:
     from jbt.dask._run import BOX_BYTES, edge_of
 
     boxes = {(x, y, z): 1000 for x in range(16) for y in range(16) for z in range(16)}
-    assert edge_of(None, boxes, 1, 1 << 40, lambda rows: rows) == 256
-    assert edge_of(None, boxes, 2, 1 << 40, lambda rows: rows) == 256
-    assert edge_of(None, boxes, 16, 1 << 40, lambda rows: rows) == 128
+    assert edge_of(None, boxes, 1, 1 << 40, lambda rows: rows) == 128
+    assert edge_of(None, boxes, 5, 1 << 40, lambda rows: rows) == 128
+    assert edge_of(None, boxes, 16, 1 << 40, lambda rows: rows) == 64
     assert edge_of(None, boxes, 1, 9 * BOX_BYTES, lambda rows: rows) == 64
     assert edge_of(None, boxes, 1, 9 * BOX_BYTES, lambda rows: 10**6 * rows) == 32
     assert edge_of(64, {}, 1, 1, lambda rows: rows) == 64

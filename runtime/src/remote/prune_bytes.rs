@@ -105,7 +105,7 @@ pub(super) fn read(reader: &mut ByteReader<'_>, function: &Function) -> Result<P
         let (rows, kind) = (reader.one_of(&DECIDED)?, reader.one_of(&DECISIONS)?);
         decisions.push(Decision { table, rows, operand, node, kind });
     }
-    let bodies = bodies(function);
+    let bodies = Bodies::of(function);
     let mut contests = Vec::new();
     for _ in 0..reader.count(14)? {
         contests.push(read_contest(reader, function, &bodies)?);
@@ -116,7 +116,7 @@ pub(super) fn read(reader: &mut ByteReader<'_>, function: &Function) -> Result<P
 fn read_contest(
     reader: &mut ByteReader<'_>,
     function: &Function,
-    bodies: &[Option<Table>],
+    bodies: &Bodies,
 ) -> Result<RowContest, FormatError> {
     let tables = function.tables.len();
     let extreme = reader.one_of(&EXTREMES)?;
@@ -132,8 +132,8 @@ fn read_contest(
     for _ in 0..reader.count(9)? {
         let table = Table::new(reader.below(tables)?);
         let (field, rows) = (Value::new(reader.below(function.values.len())?), reader.flag()?);
-        if bodies[field.index()] != Some(table) {
-            return Err(reader.error(format!("{field} is not computed in the rows of {table}")));
+        if !bodies.see(table, field) {
+            return Err(reader.error(format!("the rows of {table} do not see {field}")));
         }
         groups.push(ContestGroup { table, field, rows });
     }
@@ -160,14 +160,39 @@ fn hang_together(function: &Function, kind: ContestKind, groups: &[ContestGroup]
     owner.is_some() && is_owner && groups.iter().all(|group| above(group) == owner)
 }
 
-/// For each value, the table in whose rows it is computed.
-fn bodies(function: &Function) -> Vec<Option<Table>> {
-    let mut bodies = vec![None; function.values.len()];
-    for data in function.insts.values() {
-        let InstKind::Fold(fold) = &data.kind else { continue };
-        let body = &function.blocks[fold.body];
-        let results = body.insts.iter().flat_map(|&inst| &function.insts[inst].results);
-        body.params.iter().chain(results).for_each(|value| bodies[value.index()] = Some(fold.table));
+/// Which values the rows of a table see.
+struct Bodies {
+    /// For each value, the table in whose rows it is computed; `None` in the function's body.
+    of_value: Vec<Option<Table>>,
+    /// For each table, that in whose rows its fold stands.
+    around: Vec<Option<Table>>,
+}
+
+impl Bodies {
+    fn of(function: &Function) -> Self {
+        let mut of_value = vec![None; function.values.len()];
+        let mut around = vec![None; function.tables.len()];
+        for data in function.insts.values() {
+            let InstKind::Fold(fold) = &data.kind else { continue };
+            let body = &function.blocks[fold.body];
+            let results = body.insts.iter().flat_map(|&inst| &function.insts[inst].results);
+            body.params.iter().chain(results).for_each(|value| of_value[value.index()] = Some(fold.table));
+            for &inst in &body.insts {
+                if let InstKind::Fold(inner) = &function.insts[inst].kind {
+                    around[inner.table.index()] = Some(fold.table);
+                }
+            }
+        }
+        Self { of_value, around }
     }
-    bodies
+
+    /// Whether a value is computed in the rows of a table, or around them.
+    fn see(&self, table: Table, value: Value) -> bool {
+        let mut at = Some(table);
+        while at != self.of_value[value.index()] {
+            let Some(table) = at else { return false };
+            at = self.around[table.index()];
+        }
+        true
+    }
 }

@@ -19,6 +19,8 @@ EDGES = (512, 256, 128, 64, 32)
 BOX_BYTES = 2 << 20
 # The part of a worker's memory for one of its tasks at once.
 SHARE = 0.3
+# Bricks for each thread, so that all of them end at about the same time.
+BRICKS = 12
 # Tasks on their way for each thread of a worker: what workers and the client keep of them is bounded.
 AHEAD = 3
 
@@ -97,7 +99,7 @@ def edge_of(
             count, sum_ = weights.get(place, (0, 0))
             weights[place] = (count + 1, sum_ + rows)
         heaviest = max((count * BOX_BYTES + row_bytes(rows) for count, rows in weights.values()), default=0)
-        if (len(weights) >= 4 * threads or edge == EDGES[-1]) and heaviest <= memory:
+        if (len(weights) >= BRICKS * threads or edge == EDGES[-1]) and heaviest <= memory:
             return edge
     return EDGES[-1]
 
