@@ -7,6 +7,7 @@
 //!             └─► full kernel ─────► every vertex, once: normal and attributes
 //! ```
 
+mod blocks;
 mod kernels;
 
 use jbt_model::diagnostic::Diagnostics;

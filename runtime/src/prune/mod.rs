@@ -153,6 +153,11 @@ impl Pruner {
         self.compiled.updated(tree).pruner()
     }
 
+    /// What it runs.
+    pub(crate) fn program(&self) -> &RangeProgram {
+        &self.program
+    }
+
     /// The model.
     pub(crate) fn compiled(&self) -> &Compiled {
         &self.compiled
