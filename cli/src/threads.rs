@@ -29,20 +29,23 @@ impl Threads {
     }
 }
 
-/// Bounds the threads of work without a pool of its own: `RAYON_NUM_THREADS` says how many there are.
+/// Starts the threads of work without a pool of its own: one for each processor, or as many as
+/// `RAYON_NUM_THREADS` says.
 pub fn prepare() {
-    let wanted = std::env::var("RAYON_NUM_THREADS").ok().and_then(|words| words.parse::<usize>().ok());
-    if let Some(wanted) = wanted.filter(|&wanted| wanted > MAX_THREADS) {
-        // The pool of the process can be built once, and so after another one has shown that it can be had.
-        let tried = started(clipped(wanted, "RAYON_NUM_THREADS"));
-        let global = match tried.as_ref().map(ThreadPool::current_num_threads) {
-            Some(threads) => ThreadPoolBuilder::new().num_threads(threads),
-            None => ThreadPoolBuilder::new().num_threads(1).use_current_thread(),
-        };
-        drop(tried);
-        if let Err(error) = global.build_global() {
-            warn(&error.to_string());
-        }
+    let told = std::env::var("RAYON_NUM_THREADS").ok().and_then(|words| words.parse::<usize>().ok());
+    let wanted = match told.filter(|&told| told > 0) {
+        Some(told) => clipped(told, "RAYON_NUM_THREADS"),
+        None => std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS),
+    };
+    // The pool of the process can be built once, and so after another one has shown that it can be had.
+    let tried = started(wanted);
+    let global = match tried.as_ref().map(ThreadPool::current_num_threads) {
+        Some(threads) => ThreadPoolBuilder::new().num_threads(threads),
+        None => ThreadPoolBuilder::new().num_threads(1).use_current_thread(),
+    };
+    drop(tried);
+    if let Err(error) = global.build_global() {
+        warn(&error.to_string());
     }
 }
 

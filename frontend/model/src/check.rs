@@ -18,7 +18,8 @@
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
 //!   and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
-//!   leaves, where a leaf counts once more for each piece of its skeleton.
+//!   leaves, where a leaf counts once more for each piece of its skeleton. A point of the model is foreseen to
+//!   take at most [`limits::MAX_POINT_WORK`] of them and of what formulas take.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -47,6 +48,7 @@ mod order;
 mod parameters;
 mod particles;
 mod tree;
+mod work;
 
 pub use arena::{CheckedNode, Children, NodeId};
 use arena::{Paths, check_instances};
@@ -58,6 +60,7 @@ use node::check_node;
 use numbers::{check_numbers, check_words};
 use parameters::check_iso;
 pub use tree::CheckedTree;
+use work::check_work;
 
 impl Model {
     /// The model as a valid tree, or all its errors.
@@ -94,6 +97,9 @@ impl Model {
         let nodes = self.arena(max_nodes, &mut report, (iso, &values), &mut dependence);
         if report.is_empty() {
             check_instances(&mut report, &nodes, max_instances);
+        }
+        if report.is_empty() {
+            check_work(&mut report, &nodes, iso);
         }
         if !report.is_empty() {
             report.sort();
