@@ -6,7 +6,7 @@ use std::path::Path;
 use jbt::diagnostic::escape;
 use jbt::tree::Bounds;
 use jbt::tree::NodeKind;
-use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Query};
+use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Query, Task};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};
@@ -51,15 +51,39 @@ struct Checked {
     scene: LoadedScene,
     tree: CheckedTree,
     instances: u64,
+    /// The commands that its programs are too large for, and why.
+    too_large: Vec<(&'static str, String)>,
 }
+
+/// What commands do with a scene.
+const COMMANDS: [(&str, Task); 7] = [
+    ("eval", Task::Points(Query::FIELD)),
+    ("eval --query all", Task::Points(Query::ALL)),
+    ("mesh", Task::Mesh),
+    ("render", Task::Rays(Query::SURFACE)),
+    ("contour", Task::Slices(Query::ATTRIBUTES)),
+    ("sample", Task::Samples(Query::FIELD)),
+    ("stats", Task::Solid),
+];
 
 fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
     let scene = LoadedScene::load(arguments)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let evaluator = scene.evaluator(&Compiler::for_engine(Engine::Scalar).compile(&tree), Query::ALL)?;
-    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point() })
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
+    let refused = refused.map_err(|error| scene.failure(&error))?;
+    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
+    if let Some(why) = why(Task::Points(Query::FIELD)) {
+        // Then there is nothing to do with it.
+        return Err(scene.failure(why));
+    }
+    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
+    let evaluator = scene.evaluator(&compiled, query)?;
+    let too_large = COMMANDS.into_iter();
+    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
+    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point(), too_large })
 }
 
 /// What has been found out about the files so far.
@@ -116,6 +140,7 @@ impl Checked {
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
+            "too_large_for": self.too_large.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         })
     }
 
@@ -134,6 +159,10 @@ impl Checked {
             writeln!(out, "  bounds       {}{}", bounds(tree.support()), lattice::origin_line(tree.origin()));
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
+        if let Some((_, why)) = self.too_large.first() {
+            let names: Vec<&str> = self.too_large.iter().map(|(name, _)| *name).collect();
+            let _ = write!(out, "\n  too large    for {}: {}", names.join(", "), escape(why));
+        }
         out
     }
 }

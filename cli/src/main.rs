@@ -60,8 +60,8 @@ fn main() -> ExitCode {
     let quiet = arguments.quiet;
     memory::limit(arguments.memory);
     logger::install(quiet);
-    threads::prepare();
-    let work = || run(&arguments.command, quiet, start);
+    let watched = || signals::token().watches(|| run(&arguments.command, quiet, start));
+    let work = || threads::run_all(watched);
     let done = match &arguments.trace {
         Some(path) => timeline::record(path, work),
         None => work(),

@@ -7,6 +7,7 @@ mod far;
 mod folder;
 mod hostile;
 mod manual;
+mod memory;
 mod outputs;
 mod readers;
 mod render;
