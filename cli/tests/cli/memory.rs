@@ -18,7 +18,7 @@ fn without_memory_there_is_code_3() {
         let script = format!("ulimit -c 0; ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
         let ran = Command::new("sh")
             .args(["-c", &script, env!("CARGO_BIN_EXE_jbt")])
-            .args(["-q", "mesh", "hero.jbt", "--resolution", "48", "-o", "hero.stl"])
+            .args(["-q", "mesh", "hero.jbt", "--resolution", "32", "-o", "hero.stl"])
             .current_dir(folder.path("."))
             .output()
             .expect("a shell");
