@@ -7,6 +7,7 @@ mod render;
 mod scene;
 mod space;
 mod tools;
+mod wanted;
 mod words;
 mod work;
 
@@ -14,12 +15,14 @@ pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
-pub use scene::{SceneArguments, SceneOptions};
+pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
     CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
     StatsArguments,
 };
+pub use wanted::Wanted;
+use wanted::WantedParser;
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
@@ -30,7 +33,7 @@ use jbt::export::{ColorEncoding, Format, LengthUnit, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
-use words::{queries, words};
+use words::words;
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -234,9 +237,9 @@ pub struct SampleArguments {
     /// Where the samples go.
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -254,9 +257,9 @@ pub struct EvalArguments {
     /// CSV file of the points; `-` is the standard input
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,
