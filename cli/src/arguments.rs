@@ -50,6 +50,10 @@ pub struct Arguments {
     /// Each thread has a row, with a bar for each stage of the work and for each part of a stage.
     #[arg(long, value_name = "FILE.json", global = true)]
     pub trace: Option<PathBuf>,
+    /// The most memory to use, as 2000000000, 512M or 1.5G; work that needs more ends with code 3 [default:
+    /// three quarters of what is available]
+    #[arg(long, value_name = "BYTES", global = true, value_parser = crate::memory::bytes)]
+    pub memory: Option<u64>,
 }
 
 fn after_help() -> String {

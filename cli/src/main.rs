@@ -7,7 +7,7 @@
 //! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`convert`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
-//! | [`signals`], [`threads`] | what stops the work, and what does it |
+//! | [`signals`], [`threads`], [`memory`] | what stops the work, what does it, and where |
 //! | [`timeline`] | which thread did what when |
 //! | [`failure`], [`message`] | what went wrong, and the exit code for it |
 
@@ -23,6 +23,7 @@ mod formats;
 mod lattice;
 mod logger;
 mod manual;
+mod memory;
 mod mesh;
 mod message;
 mod output;
@@ -52,15 +53,17 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let start = Instant::now();
+    memory::prepare();
     signals::install();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
     let quiet = arguments.quiet;
+    memory::limit(arguments.memory);
     logger::install(quiet);
-    threads::prepare();
-    let work = || run(&arguments.command, quiet, start);
+    let watched = || signals::token().watches(|| run(&arguments.command, quiet, start));
+    let work = || threads::run_all(watched);
     let done = match &arguments.trace {
         Some(path) => timeline::record(path, work),
         None => work(),

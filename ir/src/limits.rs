@@ -43,6 +43,10 @@ pub const MAX_INSTANCES: usize = 4_000_000;
 /// Particles of one model, which are rows and no nodes: each time that they are used. A row keeps some 200
 /// bytes while its model is meshed.
 pub const MAX_PARTICLES: usize = 1 << 27;
+/// Work that one point of a model is foreseen to take besides a leaf or an operator for each use of a node:
+/// pieces of curves by the numbers that each has, and operations of formulas, wherever they reach. A unit takes
+/// about two nanoseconds, so a mesh of a million points of which nothing can be left out takes minutes.
+pub const MAX_POINT_WORK: usize = 1 << 17;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
@@ -84,9 +88,11 @@ pub const MAX_ROW_COPIES: usize = 1 << 21;
 /// the function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and
 /// its frame is limited.
 pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
-/// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are
-/// given. A function that needs more is interpreted.
+/// Bytes of the frame of one call of machine code. A function that needs more is interpreted.
 pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
+/// Bytes of such a frame on the caller's stack: a fraction of the smallest stacks that threads are given, 64
+/// KiB. A larger frame is in memory that belongs to the kernel.
+pub const MAX_STACK_FRAME_BYTES: usize = 16 << 10;
 /// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
 /// Bricks of one mesh: the field is kept at all points of each, 4 bytes a point.

@@ -186,7 +186,7 @@ pub use jbt_text::import;
 
 pub use boxes::{Box3, Range};
 pub use buffer::{Layout, Samples};
-pub use compiled::Compiled;
+pub use compiled::{Compiled, Task};
 pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
 pub use error::{Classified, CompileError, ErrorKind, EvalError};

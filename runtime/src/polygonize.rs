@@ -335,6 +335,9 @@ impl Polygonize {
         hook: Hook<'_>,
     ) -> Result<Polygonized, PolygonizeError> {
         let tree = compiled.tree();
+        if !hook(0.0) {
+            return Err(MeshError::Cancelled.into());
+        }
         let start = Instant::now();
         let kernels = Kernels::new(compiled)?;
         let compile_time = start.elapsed();

@@ -8,6 +8,7 @@ mod files;
 mod folder;
 mod hostile;
 mod manual;
+mod memory;
 mod names;
 mod outputs;
 mod readers;

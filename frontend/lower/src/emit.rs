@@ -196,6 +196,7 @@ impl<'a> Emitter<'a> {
     fn run(mut self) -> Result<Code, Vec<Diagnostic>> {
         self.start();
         while let Some(task) = self.tasks.pop() {
+            jbt_ir::watch::look();
             self.work(task);
             self.check_limits()?;
         }

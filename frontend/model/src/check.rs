@@ -18,7 +18,8 @@
 //! * The first attribute group is `color` with three reals, unless other groups alone were
 //!   [chosen](CheckedTree::of_attributes); names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
-//!   leaves, where a leaf counts once more for each piece of its skeleton.
+//!   leaves, where a leaf counts once more for each piece of its skeleton. A point of the model is foreseen to
+//!   take at most [`limits::MAX_POINT_WORK`] of them and of what formulas take.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -53,6 +54,7 @@ mod particles;
 mod parts;
 mod place;
 mod tree;
+mod work;
 
 pub use arena::{CheckedNode, Children, NodeId};
 use arena::{Paths, check_instances};
@@ -68,6 +70,7 @@ use parameters::check_iso;
 pub use parts::PartRoot;
 use place::{check_name, way_to};
 pub use tree::CheckedTree;
+use work::check_work;
 
 impl Model {
     /// The model as a valid tree, or all its errors.
@@ -105,6 +108,9 @@ impl Model {
         let nodes = self.arena(max_nodes, &mut report, (iso, &values), &mut dependence);
         if report.is_empty() {
             check_instances(&mut report, &nodes, max_instances);
+        }
+        if report.is_empty() {
+            check_work(&mut report, &nodes, iso);
         }
         if !report.is_empty() {
             report.sort();

@@ -38,7 +38,7 @@ use jbt_model::owner;
 use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible as _, Range};
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -115,7 +115,7 @@ impl Solid {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
-        compiled.prepare(&[Need::Ranges, Need::Answers(PointScope::Regions, Query::FIELD)])?;
+        compiled.prepare(&Task::Solid.needs())?;
         Ok(Self {
             compiled: compiled.clone(),
             iso: compiled.tree().iso() as f32,

@@ -59,7 +59,7 @@ use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible as _};
 use crate::buffer::Layout;
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
@@ -131,11 +131,7 @@ impl Tracer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
-        compiled.prepare(&[
-            Need::Ranges,
-            Need::Answers(PointScope::Regions, Query::FIELD),
-            Need::Answers(PointScope::Regions, query),
-        ])?;
+        compiled.prepare(&Task::Rays(query).needs())?;
         let (pruner, field) = (compiled.pruner()?, compiled.regional(Query::FIELD)?);
         let full = (query != Query::FIELD).then(|| compiled.regional(query)).transpose()?;
         let tree = compiled.tree();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use jbt_ir::limits;
 
 use super::arena::{CheckedNode, Lineage, NodeId, Paths, check_instances};
+use super::work::check_work;
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;
@@ -252,6 +253,9 @@ impl CheckedTree {
         // A curve may have more pieces now.
         if in_pieces && report.is_empty() {
             check_instances(report, &nodes, limits::MAX_INSTANCES);
+            if report.is_empty() {
+                check_work(report, &nodes, iso);
+            }
         }
         (Arc::new(nodes), affected)
     }

@@ -240,7 +240,7 @@ impl CheckedTree {
 }
 
 /// The extent of a node, from the extents of its children.
-fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
+pub(super) fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
     match kind {
         NodeKind::Primitive(leaf) => {
             let support = leaf.skeleton.bounds_within(leaf.radius);
