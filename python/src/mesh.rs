@@ -156,6 +156,7 @@ pub(crate) fn save_mesh(
         normals: triples("normals", &normals)?,
         attributes: attributes.collect(),
         triangles: triples("faces", &faces)?,
+        parts: Vec::new(),
     };
     let word = |name: &str, given: &str, error: String| refused(format!("{name}: {given:?}: {error}"));
     let format = match format {

@@ -52,7 +52,6 @@ pub(super) fn enclosed<S: Step, D: Domain>(
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::Domain;
     use jbt_ir::domain::interval::Interval;
     use jbt_ir::domain::scalar::Scalar;
 

@@ -78,6 +78,7 @@ impl MeshBlock {
                 normals: normals.as_chunks().0.to_vec(),
                 attributes,
                 triangles: triangles.as_chunks().0.to_vec(),
+                parts: Vec::new(),
             },
             below: below.as_chunks().0.iter().map(name).collect(),
             seams: seams.as_chunks().0.iter().map(name).zip(vertices).collect(),

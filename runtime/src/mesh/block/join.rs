@@ -142,6 +142,7 @@ fn begun(model: &Mesh, vertices: usize, blocks: &[&MeshBlock]) -> Mesh {
         normals: Vec::with_capacity(vertices),
         attributes: model.attributes.iter().map(attribute).collect(),
         triangles: Vec::with_capacity(blocks.iter().map(|block| block.mesh.triangles.len()).sum()),
+        parts: Vec::new(),
     }
 }
 
