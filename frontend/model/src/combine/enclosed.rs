@@ -9,7 +9,7 @@
 
 use jbt_ir::Domain;
 
-use super::member::{Growth, Step};
+use super::member::{SideGrowth, Step};
 
 /// The low end, or the high one, as a number.
 fn end<D: Domain>(d: &mut D, is_low: bool, x: D::Real) -> D::Real {
@@ -31,7 +31,7 @@ pub(super) fn enclosed<S: Step, D: Domain>(
 ) -> D::Real {
     let Some(growth) = S::growth(code) else { return plain };
     let [low, high] = [true, false].map(|is_low| {
-        let mut of = |side: usize| end(d, is_low == (growth[side] == Growth::Rises), sides[side]);
+        let mut of = |side: usize| end(d, is_low == (growth[side] == SideGrowth::Rises), sides[side]);
         [of(0), of(1)]
     });
     let sizes = [0, 1].map(|side| {
@@ -52,7 +52,6 @@ pub(super) fn enclosed<S: Step, D: Domain>(
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::Domain;
     use jbt_ir::domain::interval::Interval;
     use jbt_ir::domain::scalar::Scalar;
 
