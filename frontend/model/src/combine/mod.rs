@@ -194,8 +194,8 @@ macro_rules! operators {
                 match self { $( Self::$step(code) => <$step as Step>::takes_apart(code), )+ }
             }
 
-            /// The field of two sides, `plain`, to the bit. Over ranges it is bounded by its values at the ends of
-            /// the sides too, if it follows them in one way.
+            /// The field of two sides, `plain`, to the bit. Over ranges it is bounded by its values at the
+            /// ends of the sides too, if it follows them in one way.
             pub fn bounded<D: Domain>(
                 self,
                 d: &mut D,

@@ -40,7 +40,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Growth, OperatorReach, PairResult};
+use super::member::{OperatorReach, PairResult, SideGrowth};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use super::set_step::SetFormula;
@@ -170,7 +170,7 @@ impl SetFormula for Rvachev {
         Rule::Never
     }
 
-    fn growth(self) -> Option<[Growth; 2]> {
+    fn growth(self) -> Option<[SideGrowth; 2]> {
         match self.1 {
             // Slopes of R are 1 and something within 1.
             Family::Alpha | Family::Power => Some(self.0.growth()),

@@ -5,7 +5,7 @@ use std::hash::Hash;
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Growth, Operator, OperatorReach, PairResult, Step, TakesApart};
+use super::member::{Operator, OperatorReach, PairResult, SideGrowth, Step, TakesApart};
 
 /// The formula of a set operation in a family. It is what of the step selects code.
 pub trait SetFormula: Copy + Eq + Hash + Debug {
@@ -28,7 +28,7 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
     fn rule(self, non_negative: bool) -> Rule;
 
     /// See [`Step::growth`].
-    fn growth(self) -> Option<[Growth; 2]>;
+    fn growth(self) -> Option<[SideGrowth; 2]>;
 
     /// See [`Step::rounding`].
     fn rounding<D: Domain>(self, d: &mut D, sizes: [D::Real; 2], row: &[D::Real], iso2: D::Real) -> D::Real;
@@ -94,7 +94,7 @@ impl<T: SetStep> Step for T {
         formula.rule(non_negative)
     }
 
-    fn growth(formula: T::Formula) -> Option<[Growth; 2]> {
+    fn growth(formula: T::Formula) -> Option<[SideGrowth; 2]> {
         formula.growth()
     }
 

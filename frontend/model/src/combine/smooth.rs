@@ -21,7 +21,7 @@
 use jbt_ir::{Domain, Rule};
 
 use super::extreme::Extreme;
-use super::member::{Growth, OperatorReach, PairResult, TakesApart};
+use super::member::{OperatorReach, PairResult, SideGrowth, TakesApart};
 use super::set::SetOperation;
 use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
@@ -142,7 +142,7 @@ impl SetFormula for Smooth {
         }
     }
 
-    fn growth(self) -> Option<[Growth; 2]> {
+    fn growth(self) -> Option<[SideGrowth; 2]> {
         Some(self.0.growth())
     }
 
