@@ -18,8 +18,8 @@ pub use render::{GroundName, RenderArguments};
 pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
-    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
-    StatsArguments,
+    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, DiffArguments, ManArguments,
+    ShowArguments, StatsArguments,
 };
 pub use wanted::Wanted;
 use wanted::WantedParser;
@@ -80,7 +80,8 @@ Examples:
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
   jbt stats hero.jbt
-  jbt check hero.jbt";
+  jbt check hero.jbt
+  jbt diff old.jbt new.jbt";
 
 /// The commands.
 #[derive(Subcommand, Debug)]
@@ -105,6 +106,8 @@ pub enum Command {
     Stats(StatsArguments),
     /// Report everything that is wrong with scenes
     Check(CheckArguments),
+    /// Say what two scenes differ in, item by item, and where their fields do
+    Diff(DiffArguments),
     /// Print a script by which a shell completes the words of jbt
     Completions(CompletionsArguments),
     /// Write manual pages into a folder

@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
+use crate::overlaps::PartFindings;
 use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 
@@ -26,7 +27,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     let mut told = Findings::default();
     for path in &arguments.scenes {
         let scene = SceneArguments { path: path.clone(), options: arguments.options.clone() };
-        let checked = check(&scene, quiet || arguments.json);
+        let checked = check(&scene, arguments, quiet);
         if arguments.json {
             told.add(path, &checked);
         }
@@ -54,6 +55,8 @@ struct Checked {
     instances: u64,
     /// The commands that its programs are too large for, and why.
     too_large: Vec<(&'static str, String)>,
+    /// What is known of its parts, if that was asked for.
+    parts: Option<PartFindings>,
 }
 
 /// What commands do with a scene.
@@ -67,9 +70,9 @@ const COMMANDS: [(&str, Task); 7] = [
     ("stats", Task::Solid),
 ];
 
-fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = LoadedScene::load(arguments)?;
-    scene.warn(quiet);
+fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = LoadedScene::load(path)?;
+    scene.warn(quiet || arguments.json);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
     let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
@@ -84,7 +87,10 @@ fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
     let evaluator = scene.evaluator(&compiled, query)?;
     let too_large = COMMANDS.into_iter();
     let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
-    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point(), too_large })
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let parts = arguments.overlaps.then(compare).transpose()?;
+    let instances = evaluator.evaluations_per_point();
+    Ok(Checked { scene, tree, instances, too_large, parts })
 }
 
 /// What has been found out about the files so far.
@@ -144,7 +150,44 @@ impl Checked {
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
-            "too_large_for": self.too_large.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+    /// The commands that its programs are too large for, and why.
+    too_large: Vec<(&'static str, String)>,
+    /// What is known of its parts, if that was asked for.
+    parts: Option<PartFindings>,
+}
+
+/// What commands do with a scene.
+const COMMANDS: [(&str, Task); 7] = [
+    ("eval", Task::Points(Query::FIELD)),
+    ("eval --query all", Task::Points(Query::ALL)),
+    ("mesh", Task::Mesh),
+    ("render", Task::Rays(Query::SURFACE)),
+    ("contour", Task::Slices(Query::ATTRIBUTES)),
+    ("sample", Task::Samples(Query::FIELD)),
+    ("stats", Task::Solid),
+];
+
+fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = LoadedScene::load(path)?;
+    scene.warn(quiet || arguments.json);
+    let tree = scene.check()?;
+    // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
+    let refused = refused.map_err(|error| scene.failure(&error))?;
+    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
+    if let Some(why) = why(Task::Points(Query::FIELD)) {
+        // Then there is nothing to do with it.
+        return Err(scene.failure(why));
+    }
+    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
+    let evaluator = scene.evaluator(&compiled, query)?;
+    let too_large = COMMANDS.into_iter();
+    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let parts = arguments.overlaps.then(compare).transpose()?;
+    let instances = evaluator.evaluations_per_point();
+    Ok(Checked { scene, tree, instances, too_large, parts })
         })
     }
 
@@ -167,10 +210,44 @@ impl Checked {
         }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
-        if let Some((_, why)) = self.too_large.first() {
-            let names: Vec<&str> = self.too_large.iter().map(|(name, _)| *name).collect();
-            let _ = write!(out, "\n  too large    for {}: {}", names.join(", "), escape(why));
-        }
+    /// The commands that its programs are too large for, and why.
+    too_large: Vec<(&'static str, String)>,
+    /// What is known of its parts, if that was asked for.
+    parts: Option<PartFindings>,
+}
+
+/// What commands do with a scene.
+const COMMANDS: [(&str, Task); 7] = [
+    ("eval", Task::Points(Query::FIELD)),
+    ("eval --query all", Task::Points(Query::ALL)),
+    ("mesh", Task::Mesh),
+    ("render", Task::Rays(Query::SURFACE)),
+    ("contour", Task::Slices(Query::ATTRIBUTES)),
+    ("sample", Task::Samples(Query::FIELD)),
+    ("stats", Task::Solid),
+];
+
+fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = LoadedScene::load(path)?;
+    scene.warn(quiet || arguments.json);
+    let tree = scene.check()?;
+    // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
+    let refused = refused.map_err(|error| scene.failure(&error))?;
+    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
+    if let Some(why) = why(Task::Points(Query::FIELD)) {
+        // Then there is nothing to do with it.
+        return Err(scene.failure(why));
+    }
+    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
+    let evaluator = scene.evaluator(&compiled, query)?;
+    let too_large = COMMANDS.into_iter();
+    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let parts = arguments.overlaps.then(compare).transpose()?;
+    let instances = evaluator.evaluations_per_point();
+    Ok(Checked { scene, tree, instances, too_large, parts })
         out
     }
 }

@@ -16,6 +16,7 @@ use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, SourceText, escape};
 use jbt::{Classified, ErrorKind};
 
 use crate::message::Message;
+use crate::points::PointsError;
 use crate::signals;
 
 /// Why a command did not do its work.
@@ -125,6 +126,18 @@ impl Failure {
             Self::Io { .. } => 4,
             Self::Signal(signal) => signals::code(*signal),
             Self::Told { code } => *code,
+        }
+    }
+}
+
+impl From<PointsError> for Failure {
+    fn from(error: PointsError) -> Self {
+        match error {
+            PointsError::Io { name, error } => Self::io("read", name, error),
+            PointsError::Limit(message) => Self::Limit(message),
+            PointsError::Text { name, rendered } => {
+                Self::Input { messages: vec![Message::rendered(Severity::Error, &name, rendered)] }
+            }
         }
     }
 }

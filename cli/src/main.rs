@@ -16,6 +16,7 @@ mod check;
 mod contour;
 mod convert;
 mod count;
+mod diff;
 mod eval;
 mod failure;
 mod formats;
@@ -26,6 +27,7 @@ mod memory;
 mod mesh;
 mod message;
 mod output;
+mod overlaps;
 mod points;
 mod progress;
 mod render;
@@ -89,6 +91,7 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
         Command::Count(arguments) => count::run(arguments, quiet),
         Command::Stats(arguments) => stats::run(arguments, quiet, start),
         Command::Check(arguments) => check::run(arguments, quiet),
+        Command::Diff(arguments) => diff::run(arguments, quiet),
         Command::Completions(arguments) => manual::completions(arguments),
         Command::Man(arguments) => manual::man(arguments, quiet),
     }

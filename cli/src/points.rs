@@ -7,13 +7,31 @@
 
 use std::io::{self, BufRead};
 
-use jbt::diagnostic::{Diagnostic, Severity, Source, Span, escape};
-
-use crate::failure::Failure;
-use crate::message::Message;
+use jbt::diagnostic::{Diagnostic, Source, Span, escape};
 
 /// The longest line that is read, in bytes: a file without line ends is not kept in memory.
 const MAX_LINE: usize = 1 << 20;
+
+/// Why there are no more points.
+#[derive(Debug)]
+pub enum PointsError {
+    /// The file could not be read.
+    Io {
+        /// Its name.
+        name: String,
+        /// What the system said.
+        error: io::Error,
+    },
+    /// A line is longer than a line may be: a message.
+    Limit(String),
+    /// The text is wrong.
+    Text {
+        /// The name of the file.
+        name: String,
+        /// Place, message, the line, a caret.
+        rendered: String,
+    },
+}
 
 /// A reader of points.
 pub struct PointReader<R> {
@@ -36,7 +54,7 @@ struct Word {
 
 impl<R: BufRead> PointReader<R> {
     /// Reads the header.
-    pub fn new(reader: R, name: String) -> Result<Self, Failure> {
+    pub fn new(reader: R, name: String) -> Result<Self, PointsError> {
         let mut points = Self {
             reader,
             name,
@@ -80,7 +98,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The next points, at most `limit`; none at the end.
-    pub fn batch(&mut self, limit: usize) -> Result<Vec<[f64; 3]>, Failure> {
+    pub fn batch(&mut self, limit: usize) -> Result<Vec<[f64; 3]>, PointsError> {
         let mut points = Vec::new();
         while points.len() < limit && self.next_line()? {
             points.push(self.point()?);
@@ -89,7 +107,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The point of the line in the buffer.
-    fn point(&self) -> Result<[f64; 3], Failure> {
+    fn point(&self) -> Result<[f64; 3], PointsError> {
         let words = self.words()?;
         let mut point = [0.0; 3];
         for (axis, (number, &column)) in point.iter_mut().zip(&self.columns).enumerate() {
@@ -108,10 +126,11 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// Brings the next line that is not blank into the buffer, without its end; false at the end of the text.
-    fn next_line(&mut self) -> Result<bool, Failure> {
+    fn next_line(&mut self) -> Result<bool, PointsError> {
         loop {
             self.buffer.clear();
-            let read = self.read_line().map_err(|error| Failure::io("read", &self.name, error))?;
+            let read =
+                self.read_line().map_err(|error| PointsError::Io { name: self.name.clone(), error })?;
             if read == 0 {
                 return Ok(false);
             }
@@ -119,7 +138,7 @@ impl<R: BufRead> PointReader<R> {
             self.bytes += read as u64;
             if self.buffer.len() > MAX_LINE {
                 let place = format!("{}:{}", escape(&self.name), self.line);
-                return Err(Failure::Limit(format!("{place}: a line is longer than {MAX_LINE} bytes")));
+                return Err(PointsError::Limit(format!("{place}: a line is longer than {MAX_LINE} bytes")));
             }
             if !self.buffer.trim_ascii().is_empty() {
                 return Ok(true);
@@ -156,7 +175,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The fields of the line in the buffer.
-    fn words(&self) -> Result<Vec<Word>, Failure> {
+    fn words(&self) -> Result<Vec<Word>, PointsError> {
         let line = &self.buffer;
         let mut words = Vec::new();
         let mut at = 0;
@@ -197,11 +216,11 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// A located error in the line of the buffer, between these bytes of it.
-    fn error(&self, start: usize, end: usize, message: &str) -> Failure {
+    fn error(&self, start: usize, end: usize, message: &str) -> PointsError {
         let span = Span::new(start, end);
         let source = Source { name: &self.name, text: &self.buffer };
-        let message = source.render_from(self.line.max(1), &Diagnostic::error(Some(span), message));
-        Failure::Input { messages: vec![Message::rendered(Severity::Error, &self.name, message)] }
+        let rendered = source.render_from(self.line.max(1), &Diagnostic::error(Some(span), message));
+        PointsError::Text { name: self.name.clone(), rendered }
     }
 }
 
@@ -235,7 +254,10 @@ mod tests {
                 all.extend(batch);
             }
         };
-        all().map_err(|failure: Failure| failure.to_string())
+        all().map_err(|error: PointsError| match error {
+            PointsError::Text { rendered, .. } => rendered,
+            PointsError::Io { .. } | PointsError::Limit(_) => panic!("{error:?}"),
+        })
     }
 
     #[test]
@@ -297,6 +319,6 @@ mod tests {
     #[test]
     fn a_line_without_end_is_not_kept() {
         let reader = io::BufReader::new(io::repeat(b','));
-        assert!(matches!(PointReader::new(reader, "p".to_owned()), Err(Failure::Limit(_))));
+        assert!(matches!(PointReader::new(reader, "p".to_owned()), Err(PointsError::Limit(_))));
     }
 }

@@ -207,6 +207,14 @@ impl Compiled {
         &self.0.tree
     }
 
+    /// Puts programs here that were made in another way, where none has been asked for.
+    pub(crate) fn fill(&self, ranges: RangeProgram, answers: Vec<AnswerProgram>) {
+        self.0.ranges.give(Arc::new(ranges));
+        for program in answers {
+            self.0.in_regions[program.query.index()].give(Arc::new(program));
+        }
+    }
+
     /// What compiles it.
     #[must_use]
     pub fn compiler(&self) -> &Compiler {

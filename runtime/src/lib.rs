@@ -45,6 +45,7 @@
 //! * A [`Pruner`] makes a [`Region`] of a box: the rows that matter there. [`Evaluator::eval_region`] runs
 //!   these alone, with the same bits; [`divide`], [`sample`] and meshes do so by themselves.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
+//! * [`remote`] makes parts of models for other processes, and [`Polygonize::block`] parts of meshes.
 //! * A [`LiveMesh`] follows the edits of its model: what has changed is made anew, in buffers for a GPU.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
@@ -116,6 +117,7 @@
 
 pub mod boxes;
 mod buffer;
+mod bytes;
 mod compiled;
 mod compiler;
 pub mod contour;
@@ -144,6 +146,7 @@ mod probe;
 mod program;
 mod progress;
 pub mod prune;
+pub mod remote;
 pub mod render;
 pub mod sample;
 mod scene;

@@ -51,6 +51,7 @@ mod order;
 mod owners;
 mod parameters;
 mod particles;
+mod parts;
 mod place;
 mod tree;
 mod work;
@@ -66,6 +67,7 @@ use node::check_node;
 use numbers::{check_numbers, check_words};
 pub use owners::OWNER;
 use parameters::check_iso;
+pub use parts::PartRoot;
 use place::{check_name, way_to};
 pub use tree::CheckedTree;
 use work::check_work;
@@ -98,6 +100,7 @@ impl Model {
         }
         let iso = check_iso(&mut report, &self.iso, &values);
         check_groups(&mut report, &self.attributes);
+        parts::check_parts(&mut report, &self.root);
         if let Some(point) = self.origin {
             check_numbers(&mut report, None, "the origin", &point, f64::NEG_INFINITY);
         }

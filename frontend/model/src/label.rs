@@ -11,6 +11,8 @@ use crate::diagnostic::{Note, Span};
 pub struct Label {
     /// Its name.
     pub name: Option<Arc<str>>,
+    /// Whether it is a part: a solid of its own, if it stands right below the root.
+    pub part: bool,
     /// The calls and loops around it, if it is not written where the model has it.
     pub calls: Option<Arc<Call>>,
 }

@@ -24,6 +24,7 @@ use crate::word::normalized;
 use crate::written::Written;
 
 mod order;
+mod part;
 mod select;
 mod share;
 

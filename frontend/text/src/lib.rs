@@ -16,7 +16,7 @@
 //! # Grammar
 //!
 //! ```text
-//! file       = "jbt" "1" { statement } ;                     exactly one statement is a node: the root
+//! file       = "jbt" "1" { statement } ;                     exactly one statement is a node, the root; or there are parts instead
 //! statement  = "iso" expression                              before all nodes; 0.5 if not written
 //!            | "origin" vector                               where local coordinates begin; found by the check if not written
 //!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
@@ -26,6 +26,7 @@
 //!            | "let" NAME "=" ( node | item )
 //!            | "def" NAME "(" [ NAME [ "=" item ] { "," NAME [ "=" item ] } ] ")" body
 //!            | "include" QUOTED                              what the file gives a name to
+//!            | "part" QUOTED "{" { node } "}"             a solid of its own
 //!            | node ;
 //! body       = "{" { "let" NAME "=" ( node | item ) | node } "}" ;    nodes of which it stands for all
 //! node       = NAME ":" node                                 with a name
@@ -38,7 +39,7 @@
 //! test       = { "not" } expression [ ( "<" | "<=" | ">" | ">=" | "==" | "!=" ) expression ] ;
 //! item       = expression | vector | HEX | "srgb" vector | "[" { item [ "," ] } "]" | "use" NAME
 //!            | NAME { "[" expression "]" } ;                 a value with a name, or an element of it
-//! plain      = primitive | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
+//! plain      = primitive | "empty" | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
 //! formula    = "expression" [ box ] "{" { NAME "=" expression "," } expression "}"
 //!            | box "{" node "}"                              the node's field, and 0 outside of the box
 //!            | "falloff" FALLOFF "radius" expression "{" node "}" ;   the node's field is a distance; what is negative is 0
@@ -49,7 +50,7 @@
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
 //!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]   soft if not written
 //!            | "strength" expression ;                       1 if not written
-//! particles  = "particles" "{" { parameter } "}" ;           the sum of points; in any order, each once:
+//! particles  = "particles" "{" { parameter | ( "file" | "columns" | "values" ) QUOTED } "}" ;           the sum of points; in any order, each once:
 //!              "at" "(" { vector } ")"                        where they are
 //!            | ( "radius" | "surface_radius" | "strength" ) ( expression | "(" { number } ")" )     for all, or for each
 //!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]
@@ -137,10 +138,12 @@
 mod attribute;
 mod block;
 mod color;
+mod compare;
 mod expression;
 mod falloff;
 pub mod files;
 mod formula;
+mod hash;
 mod hints;
 pub mod import;
 mod lex;
@@ -148,6 +151,8 @@ mod map;
 mod node;
 mod operator;
 mod parse;
+mod part;
+mod particle_file;
 mod particles;
 mod primitive;
 mod print;
@@ -167,6 +172,8 @@ pub use jbt_model::function::Function;
 use jbt_model::model::Model;
 use jbt_model::word::normalized;
 
+pub use compare::{Difference, MAX_DIFFERENCES, compare};
+pub use hash::{HASH_VERSION, ModelHash, hash};
 pub use print::print;
 pub use state::Options;
 use texts::Texts;

@@ -8,9 +8,10 @@ use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::program::Value;
 use super::state::Parser;
-use super::words::{GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
+use super::words::{EMPTY, GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::expression::Formula;
 use jbt_model::map::MapKind;
 use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::SkeletonKind;
@@ -25,14 +26,14 @@ impl<'a> Parser<'a> {
         fixed_words().any(|fixed| fixed == word)
             || self.group(word).is_some()
             || self.program.defines(word)
-            || ["for", "if", "include"].contains(&word)
+            || ["for", "if", "include", EMPTY].contains(&word)
     }
 
     /// All words that begin a node of this file.
     fn node_words(&self) -> impl Iterator<Item = &str> {
         let fixed = fixed_words().map(|word| -> &str { word });
         let own = self.attributes.iter().map(|group| &*group.name);
-        fixed.chain(own).chain(self.program.definition_names())
+        fixed.chain([EMPTY]).chain(own).chain(self.program.definition_names())
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -179,6 +180,10 @@ impl<'a> Parser<'a> {
             _ if self.is_loop(word) => self.for_node(start),
             _ if self.is_condition(word) => self.if_node(start),
             _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
+            EMPTY => {
+                self.count_node(start.span());
+                Begun::Leaf(self.make(start.span(), Written::Expression(Formula::zero()), Vec::new()))
+            }
             _ => self.unknown_node(start, word),
         }
     }

@@ -6,6 +6,7 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
 use super::expression::ExpressionPlace;
 use super::lex::{RANGE, Token, TokenKind};
+use super::part::PART;
 use super::program::Value;
 use super::state::{Options, Parser};
 use super::texts::Texts;
@@ -95,6 +96,9 @@ impl<'a> Parser<'a> {
                         self.report_again();
                         self.next();
                         self.definition_statement(word, token);
+                    } else if self.begins_part(word) {
+                        self.report_again();
+                        self.part_statement(token);
                     } else if is_statement(word) {
                         self.report_again();
                         self.next();
@@ -134,6 +138,7 @@ impl<'a> Parser<'a> {
         let name = self.peek_behind();
         let key = match word {
             _ if self.begins_definition(word) => return,
+            _ if self.begins_part(word) => format!("{PART} {}", self.part_name()),
             "jbt" | "iso" | "origin" => word.to_owned(),
             _ if is_statement(word) && name.kind == TokenKind::Word => format!("{word} {}", self.text(name)),
             _ => ROOT.to_owned(),
@@ -471,6 +476,7 @@ impl<'a> Parser<'a> {
 
     fn finish(mut self) -> Result<Model, Vec<Diagnostic>> {
         self.check_options();
+        self.root_of_parts();
         if self.root.is_none() {
             let end = Span::new(self.whole.len(), self.whole.len());
             self.report(|| {

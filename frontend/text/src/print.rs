@@ -8,9 +8,10 @@ use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
 use super::parse::ROOT;
+use super::part::PART;
 use super::particles::AT;
 use super::words::{
-    COMMON_FIELDS, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
+    COMMON_FIELDS, EMPTY, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
 };
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{CombinatorKind, Syntax};
@@ -70,9 +71,43 @@ pub fn print(model: &Model) -> String {
         printer.tree(&mut out, tree, Some(name));
         out.push_str("\n\n");
     }
-    comment(&mut out, model, ROOT);
-    printer.tree(&mut out, &model.root, None);
-    out.push('\n');
+    let parts = model.root.parts();
+    for (place, part) in parts.iter().enumerate() {
+        let name = part.node().name().unwrap_or_default();
+        out.push_str(if place > 0 { "\n" } else { "" });
+        comment(&mut out, model, &format!("{PART} {name}"));
+        let _ = write!(out, "{PART} \"{name}\"");
+        printer.part(&mut out, part);
+        out.push('\n');
+    }
+    if parts.is_empty() {
+        comment(&mut out, model, ROOT);
+        printer.tree(&mut out, &model.root, None);
+        out.push('\n');
+    }
+    out
+}
+
+/// The statements in front of the root, each as it is printed: those that say what the tree means, without
+/// comments.
+pub(super) fn statements(model: &Model) -> Vec<String> {
+    let plain = Model { comments: jbt_model::model::Comments::new(), root: Tree::empty(), ..model.clone() };
+    let mut parameters: Vec<String> = Vec::new();
+    for parameter in model.all_parameters() {
+        let mut line = String::new();
+        print_parameter(&mut line, &parameter);
+        parameters.push(line.trim_end().to_owned());
+    }
+    let rest = print(&plain);
+    let rest =
+        rest.lines().skip(1).filter(|line| !line.is_empty() && !line.starts_with("param ") && *line != EMPTY);
+    parameters.into_iter().chain(rest.map(str::to_owned)).collect()
+}
+
+/// The words and numbers of a node, without its block.
+pub(super) fn node_words(tree: &Tree) -> String {
+    let mut out = String::new();
+    head(&mut out, tree.node().written(), "t");
     out
 }
 
@@ -204,6 +239,18 @@ impl Printer {
             let _ = write!(out, "{name}: ");
         }
         self.open(out, &mut stack, root, 0);
+        self.rest(out, stack);
+    }
+
+    /// The block of a part.
+    fn part(&self, out: &mut String, part: &Tree) {
+        let mut stack = Vec::new();
+        block(out, &mut stack, part.node().children(), 0);
+        self.rest(out, stack);
+    }
+
+    /// What is left to print.
+    fn rest<'a>(&self, out: &mut String, mut stack: Vec<Item<'a>>) {
         while let Some(item) = stack.pop() {
             match item {
                 Item::Text(text) => out.push_str(text),
@@ -235,19 +282,14 @@ impl Printer {
             None => format!("missing{place}"),
         };
         match tree.node().written() {
+            Written::Expression(formula) if formula.is_zero() => out.push_str(EMPTY),
             Written::Expression(formula) => expression(out, formula, child, &self.definitions),
             written => head(out, written, &self.definitions),
         }
         match tree.node().written() {
             Written::Primitive { .. } | Written::Particles(_) | Written::Expression(_) => {}
             Written::Combine { .. } | Written::Select(_) => {
-                out.push_str(" {");
-                stack.push(Item::Text("}"));
-                stack.push(Item::Line(depth));
-                for child in children.iter().rev() {
-                    stack.push(Item::Tree(child, depth + 1));
-                    stack.push(Item::Line(depth + 1));
-                }
+                block(out, stack, children, depth);
             }
             Written::Map { .. }
             | Written::Warp { .. }
@@ -264,6 +306,17 @@ impl Printer {
                 }
             }
         }
+    }
+}
+
+/// The block of an operator at a depth: a line for each child.
+fn block<'a>(out: &mut String, stack: &mut Vec<Item<'a>>, children: &'a [Tree], depth: usize) {
+    out.push_str(" {");
+    stack.push(Item::Text("}"));
+    stack.push(Item::Line(depth));
+    for child in children.iter().rev() {
+        stack.push(Item::Tree(child, depth + 1));
+        stack.push(Item::Line(depth + 1));
     }
 }
 

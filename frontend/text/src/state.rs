@@ -66,6 +66,8 @@ pub(super) struct Parser<'a> {
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
     pub(super) root: Option<Tree>,
+    /// The parts of the scene.
+    pub(super) parts: Vec<Tree>,
     /// A brace that the end of the file leaves open has been reported.
     pub(super) ended: bool,
     /// Stands for every node that could not be read.
@@ -95,6 +97,7 @@ impl<'a> Parser<'a> {
             orientation: None,
             nodes: 0,
             root: None,
+            parts: Vec::new(),
             ended: false,
             broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
             program: Program::new(whole, texts, options),

@@ -8,7 +8,7 @@ use std::io::Write;
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
 use super::parts::{WriteError, colors, write_items};
 use super::zip::Archive;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshPiece};
 use crate::srgb;
 
 /// What is usual in these files.
@@ -79,32 +79,53 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, mut out: &mut dyn Write) -> Resu
         })?;
         writeln!(out, "</m:colorgroup>")?;
     }
-    let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
-    let name = choices.name.map_or_else(String::new, |name| format!(" name=\"{}\"", in_quotes(name)));
-    writeln!(out, "<object id=\"2\" type=\"model\"{name}{group}>\n<mesh>\n<vertices>")?;
-    write_items(&mut out, mesh.positions.len(), |vertex, bytes| {
-        let [x, y, z] = choices.place(mesh.positions[vertex]);
-        writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
-    })?;
-    writeln!(out, "</vertices>\n<triangles>")?;
-    write_items(&mut out, mesh.triangles.len(), |triangle, bytes| {
-        let triangle = mesh.triangles[triangle];
-        let [a, b, c] = triangle;
-        write!(bytes, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
-        if let Some(palette) = &palette {
-            let [a, b, c] = triangle.map(|vertex| palette.places[vertex as usize]);
-            write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?;
-        }
-        writeln!(bytes, "/>")
-    })?;
-    writeln!(out, "</triangles>\n</mesh>\n</object>\n</resources>\n<build>")?;
+    let pieces: Vec<_> = mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()).collect();
+    for (place, piece) in pieces.iter().enumerate() {
+        object(mesh, choices, piece, (place + 2, palette.as_ref()), out)?;
+    }
+    writeln!(out, "</resources>\n<build>")?;
     let [x, y, z] = choices.place(mesh.origin);
     let moved = if mesh.is_about_world() {
         String::new()
     } else {
         format!(" transform=\"1 0 0 0 1 0 0 0 1 {x} {y} {z}\"")
     };
-    writeln!(out, "<item objectid=\"2\"{moved}/>\n</build>\n</model>")?;
+    for place in 0..pieces.len() {
+        writeln!(out, "<item objectid=\"{}\"{moved}/>", place + 2)?;
+    }
+    writeln!(out, "</build>\n</model>")?;
+    Ok(())
+}
+
+/// The object of a piece, with its number.
+fn object(
+    mesh: &Mesh,
+    choices: FileChoices<'_>,
+    piece: &MeshPiece<'_>,
+    (number, palette): (usize, Option<&Palette>),
+    mut out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
+    let name = piece.name.or(choices.name);
+    let name = name.map_or_else(String::new, |name| format!(" name=\"{}\"", in_quotes(name)));
+    writeln!(out, "<object id=\"{number}\" type=\"model\"{name}{group}>\n<mesh>\n<vertices>")?;
+    let first = piece.vertices.start;
+    write_items(&mut out, piece.vertices.len(), |vertex, bytes| {
+        let [x, y, z] = choices.place(mesh.positions[first + vertex]);
+        writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
+    })?;
+    writeln!(out, "</vertices>\n<triangles>")?;
+    write_items(&mut out, piece.triangles.len(), |triangle, bytes| {
+        let triangle = mesh.triangles[piece.triangles.start + triangle];
+        let [a, b, c] = triangle.map(|vertex| vertex as usize - first);
+        write!(bytes, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+        if let Some(palette) = palette {
+            let [a, b, c] = triangle.map(|vertex| palette.places[vertex as usize]);
+            write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?;
+        }
+        writeln!(bytes, "/>")
+    })?;
+    writeln!(out, "</triangles>\n</mesh>\n</object>")?;
     Ok(())
 }
 

@@ -65,6 +65,7 @@ pub(crate) fn finish<F: Field>(
         normals: vec![[0.0; 3]; count],
         attributes: attributes.into_iter().map(attribute).collect(),
         triangles: Vec::new(),
+        parts: Vec::new(),
     };
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);

@@ -136,12 +136,13 @@ impl Sampler {
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
         let is_formula = |kind: &NodeKind| matches!(kind, NodeKind::Expression(_));
+        Self::with(compiled, query, compiled.tree().nodes().iter().any(|node| is_formula(&node.kind)))
+    }
+
+    /// A sampler of a model that has formulas or has none.
+    pub(crate) fn with(compiled: &Compiled, query: Query, formulas: bool) -> Result<Self, CompileError> {
         compiled.prepare(&Task::Samples(query).needs())?;
-        Ok(Self {
-            evaluator: compiled.regional(query)?,
-            pruner: compiled.pruner()?,
-            formulas: compiled.tree().nodes().iter().any(|node| is_formula(&node.kind)),
-        })
+        Ok(Self { evaluator: compiled.regional(query)?, pruner: compiled.pruner()?, formulas })
     }
 
     /// What answers.

@@ -275,6 +275,16 @@ impl Tracer {
         owner::owner(self.tree(), self.tree().origin().world(position.map(f64::from)))
     }
 
+    /// The part of the model at a hit: its place among the [parts](CheckedTree::parts), or nothing if the
+    /// model is one solid.
+    #[must_use]
+    pub fn part(&self, position: [f32; 3]) -> Option<usize> {
+        if self.tree().parts().is_empty() {
+            return None;
+        }
+        Some(self.owner(position)?.above.first()?.1 as usize)
+    }
+
     /// The leaf that decides at a position: the leaf of [`owner`](Self::owner). If only one leaf matters at
     /// the position, no walk is needed.
     ///

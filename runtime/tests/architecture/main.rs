@@ -11,7 +11,7 @@ mod types;
 use std::path::{Path, PathBuf};
 
 /// All crates.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "frontend/model",
     "frontend/text",
     "frontend/lower",
@@ -21,6 +21,7 @@ const CRATES: [&str; 10] = [
     "cli",
     "benches",
     "testkit",
+    "fuzz/targets",
     "python",
 ];
 

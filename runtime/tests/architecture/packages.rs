@@ -18,6 +18,24 @@ fn packages(features: &str) -> BTreeSet<String> {
     names.filter(|name| *name != "jbt" && !name.starts_with("jbt-")).map(str::to_owned).collect()
 }
 
+/// The crate's documentation counts them in words.
+#[test]
+fn the_counts_that_are_told_are_right() {
+    let text = std::fs::read_to_string(root().join("runtime/src/lib.rs")).expect("text");
+    let told = "Without default features thirteen packages of others are built, with `jit` forty-three.";
+    assert!(text.contains(told), "the counts are told in other words");
+    assert_eq!((packages("").len(), packages("jit").len()), (13, 43));
+}
+
+/// All packages that are locked, those of benches and tests for every system among them: a change of their
+/// number is looked at.
+#[test]
+fn locked_packages_are_counted() {
+    let text = std::fs::read_to_string(root().join("Cargo.lock")).expect("text");
+    let found = text.lines().filter(|line| *line == "[[package]]").count();
+    assert_eq!(found, 310, "packages in Cargo.lock");
+}
+
 #[test]
 fn the_interpreters_need_few_packages() {
     let found = packages("");

@@ -179,7 +179,7 @@ impl CheckedTree {
     }
 
     /// Appends a copy of a subtree to `nodes`; returns the index of its root.
-    fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
+    pub(super) fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
         let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();
         // Children come before their parents, so the walk over the descendants goes from the last to the
         // first.

@@ -47,9 +47,7 @@ pub(super) fn check_work(report: &mut Report, nodes: &[CheckedNode], iso: f64) {
             "unfolded, a point of the model would take {work:.0} pieces of curves and parts of formulas; \
              it may take {most}"
         );
-        report.add(|| {
-            Diagnostic::limit(span, message).expected("expected fewer uses, or smaller radii")
-        });
+        report.add(|| Diagnostic::limit(span, message).expected("expected fewer uses, or smaller radii"));
     }
 }
 

@@ -79,6 +79,7 @@ fn is_same(a: &Tree, b: &Tree) -> bool {
     a.children().len() == b.children().len()
         && a.children().iter().zip(b.children()).all(|(a, b)| a.identity() == b.identity())
         && a.name() == b.name()
+        && a.label().is_some_and(|label| label.part) == b.label().is_some_and(|label| label.part)
         && a.written() == b.written()
         && a.written().numbers().zip(b.written().numbers()).all(same_bits)
         && match (a.written(), b.written()) {

@@ -48,7 +48,7 @@ impl<'a> Parser<'a> {
         let token = self.next();
         let name = self.text(token).trim_matches('"');
         self.program.has_expanded = true;
-        let file = self.included_file(name, token)?;
+        let file = self.named_file(name, token, "include")?;
         if let Some(at) = self.program.open.iter().position(|(identity, _)| *identity == file.identity) {
             let paths = self.program.open[at..].iter().map(|(_, path)| path.as_str()).chain([&*file.path]);
             let circle: Vec<&str> = paths.collect();
@@ -73,12 +73,14 @@ impl<'a> Parser<'a> {
     }
 
     /// The file of a name; nothing after a message, in which no word of the file stands.
-    fn included_file(&mut self, name: &str, token: Token) -> Option<Arc<NamedFile>> {
+    pub(crate) fn named_file(&mut self, name: &str, token: Token, what: &str) -> Option<Arc<NamedFile>> {
         let from = self.program.open.last().map(|(_, path)| path.clone());
-        match self.program.files.read_at_most(name, from.as_deref(), self.program.left) {
+        // Texts count to what is expanded.
+        let most = if what == "include" { self.program.left } else { usize::MAX };
+        match self.program.files.read_at_most(name, from.as_deref(), most) {
             Ok(file) => Some(file),
             Err(error) => {
-                let message = format!("cannot include `{}`: {error}", clip(name));
+                let message = format!("cannot {what} `{}`: {error}", clip(name));
                 let span = Some(token.span());
                 self.report(|| {
                     let made = if error.is_limit() {

@@ -1,0 +1,183 @@
+//! Numbers of the documents that are counts, sizes or outputs: what gives each of them stands beside it, and is asked.
+//!
+//! ```text
+//! <!-- claim "takes six" = "6.00": jbt count examples/hero.jbt -->     a command of the binary says 6.00
+//! <!-- claim "64 MiB" = MAX_SCENE_BYTES -->                            a limit has this value
+//! <!-- claim "27 examples" = count examples/*.jbt -->                  so many files
+//! ```
+//!
+//! What is quoted first stands in the same document. Times are in `benches/record/` alone.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// README, ARCHITECTURE, and the pages of docs: name and text.
+fn documents() -> Vec<(String, String)> {
+    let mut names = vec!["README.md".to_owned(), "ARCHITECTURE.md".to_owned(), "SECURITY.md".to_owned()];
+    for entry in fs::read_dir(root().join("docs")).expect("a folder") {
+        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        if name.ends_with(".md") {
+            names.push(format!("docs/{name}"));
+        }
+    }
+    names.sort();
+    names
+        .into_iter()
+        .map(|name| (name.clone(), fs::read_to_string(root().join(name)).expect("text")))
+        .collect()
+}
+
+/// The claims of a text: what is claimed, and what gives it.
+fn claims(text: &str) -> Vec<(&str, &str)> {
+    let comments = text.split("<!-- claim ").skip(1).map(|rest| rest.split(" -->").next().unwrap_or(rest));
+    let claims = comments.map(|comment| {
+        let parts = comment.strip_prefix('"').and_then(|rest| rest.split_once("\" = "));
+        parts.unwrap_or_else(|| panic!("a claim is \"TEXT\" = WHAT GIVES IT: {comment}"))
+    });
+    claims.collect()
+}
+
+/// A text with one blank for all blanks, and without comments.
+fn plain(text: &str) -> String {
+    let without = text.split("<!--").map(|part| part.split_once("-->").map_or(part, |(_, rest)| rest));
+    without.collect::<String>().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The constants of the file of limits.
+fn limits() -> BTreeMap<String, f64> {
+    let text = fs::read_to_string(root().join("ir/src/limits.rs")).expect("text");
+    let lines = text.lines().filter_map(|line| line.strip_prefix("pub const ")?.strip_suffix(';'));
+    let constants = lines.filter_map(|line| {
+        let (name, rest) = line.split_once(": ")?;
+        let (_, value) = rest.split_once(" = ")?;
+        let value = value.trim_end_matches(" as f64").trim_matches(['(', ')']).replace('_', "");
+        let number = match value.split_once(" << ") {
+            Some((of, by)) => of.parse::<f64>().ok()? * 2_f64.powi(by.parse().ok()?),
+            None => value.parse().ok()?,
+        };
+        Some((name.to_owned(), number))
+    });
+    constants.collect()
+}
+
+/// A number as pages write it.
+fn written(number: f64) -> Vec<String> {
+    let digits = format!("{number:.0}");
+    let mut grouped = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    vec![
+        grouped,
+        format!("{} MiB", number / 1_048_576.0),
+        format!("{number:e}"),
+        format!("2^{}", number.log2()),
+    ]
+}
+
+/// How many files there are of a pattern, as `examples/*.jbt`.
+fn count(pattern: &str) -> usize {
+    let (folder, ending) = pattern.split_once('*').unwrap_or_else(|| panic!("{pattern} has a star"));
+    let entries = fs::read_dir(root().join(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
+    entries
+        .filter(|entry| entry.as_ref().is_ok_and(|one| one.file_name().to_string_lossy().ends_with(ending)))
+        .count()
+}
+
+/// Panics unless a claim holds.
+fn check(document: &str, claimed: &str, by: &str) {
+    let what = format!("{document} claims \"{claimed}\" by {by}");
+    if let Some(pattern) = by.strip_prefix("count ") {
+        let words: Vec<&str> = claimed.split_whitespace().collect();
+        assert!(words.contains(&count(pattern).to_string().as_str()), "{what}: there are {}", count(pattern));
+    } else if let Some((expected, command)) =
+        by.strip_prefix('"').and_then(|rest| rest.split_once("\": jbt "))
+    {
+        let begin = Instant::now();
+        let output = Command::new(env!("CARGO_BIN_EXE_jbt"))
+            .args(command.split_whitespace())
+            .current_dir(root())
+            .output()
+            .expect("the binary runs");
+        let told = [output.stdout, output.stderr].concat();
+        let told = plain(&String::from_utf8_lossy(&told));
+        assert!(told.contains(expected), "{what}, which says\n{told}");
+        // Quick commands alone: this many seconds on a loaded machine.
+        assert!(begin.elapsed() < Duration::from_secs(20), "{what}: that took {:?}", begin.elapsed());
+    } else {
+        let limits = limits();
+        let number =
+            limits.get(by).unwrap_or_else(|| panic!("{what}, which is no limit of ir/src/limits.rs"));
+        let ways = written(*number);
+        assert!(
+            ways.iter().any(|way| claimed.contains(way.as_str())),
+            "{what}, which is {}",
+            ways.join(" or ")
+        );
+    }
+}
+
+#[test]
+fn claims_hold() {
+    let mut total = 0;
+    for (document, text) in documents() {
+        let prose = plain(&text);
+        for (claimed, by) in claims(&text) {
+            assert!(prose.contains(claimed), "{document} does not say \"{claimed}\"");
+            check(&document, claimed, by);
+            total += 1;
+        }
+    }
+    assert!(total >= 20, "only {total} claims were found");
+}
+
+/// Tests that the page of promises names are there.
+#[test]
+fn promises_name_tests_that_are_there() {
+    let text = fs::read_to_string(root().join("docs/promises.md")).expect("the page");
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| R")).collect();
+    assert!(rows.len() >= 20, "{} promises", rows.len());
+    let packages = [
+        ("jbt", "runtime"),
+        ("jbt-cli", "cli"),
+        ("jbt-targets", "fuzz/targets"),
+        ("jbt-ir", "ir"),
+        ("jbt-jit", "jit"),
+        ("jbt-text", "frontend/text"),
+    ];
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, _, promise, figure, command, date, machine, _] = cells[..] else {
+            panic!("seven bars: {row}")
+        };
+        assert!([promise, figure, date, machine].iter().all(|cell| !cell.is_empty()), "{row}");
+        let words: Vec<&str> = command.trim_matches('`').split_whitespace().collect();
+        let after = |flag: &str| {
+            words.iter().position(|word| *word == flag).and_then(|at| words.get(at + 1)).copied()
+        };
+        if let (Some(package), Some(test)) = (after("-p"), after("--test")) {
+            let folder =
+                packages.iter().find(|(name, _)| *name == package).unwrap_or_else(|| panic!("{row}")).1;
+            let path = root().join(folder).join("tests");
+            let is_there =
+                path.join(format!("{test}.rs")).exists() || path.join(test).join("main.rs").exists();
+            assert!(is_there, "{package} has no test {test}: {row}");
+        } else {
+            let script = words.iter().find(|word| word.contains('/')).unwrap_or_else(|| panic!("{row}"));
+            assert!(
+                root().join(script).exists() || script.starts_with("target/"),
+                "{script} is not there: {row}"
+            );
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Kills at random moments: the old file or the new one, and nothing else.
+
+use std::fs;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::work::{JBT, Room, TEMPORARY, example, wanted};
+
+/// Kills with an old file, and without one.
+const KILLS: u32 = 100;
+
+#[test]
+fn a_kill_at_any_moment_leaves_the_old_file_or_the_new_one() {
+    if !wanted() {
+        return;
+    }
+    let scene = example("peanut");
+    let room = Room::new();
+    let arguments = ["mesh", &scene, "-o", "out.stl", "--resolution", "160", "--quiet"];
+    let begin = Instant::now();
+    assert!(room.command(JBT).args(arguments).status().expect("it runs").success());
+    let whole = begin.elapsed();
+    let new = fs::read(room.path("out.stl")).expect("a mesh");
+    let mut rng = fastrand::Rng::with_seed(7);
+    let (mut finished, mut temporaries) = (0, 0);
+    for old in [None, Some(b"old".as_slice())] {
+        for kill in 0..KILLS {
+            fs::remove_file(room.path("out.stl")).ok();
+            if let Some(old) = old {
+                fs::write(room.path("out.stl"), old).expect("a file");
+            }
+            let mut child = room.command(JBT).args(arguments).stderr(Stdio::null()).spawn().expect("it runs");
+            sleep(whole.mul_f64(1.3 * rng.f64()) + Duration::from_micros(rng.u64(0..500)));
+            child.kill().expect("it takes a signal");
+            finished += u32::from(child.wait().expect("it ends").success());
+            let found = fs::read(room.path("out.stl")).ok();
+            let is_whole = found.as_deref() == old || found.as_deref() == Some(new.as_slice());
+            let length = found.map(|bytes| bytes.len());
+            assert!(is_whole, "kill {kill} of {whole:?}: the target has {length:?} bytes");
+            let mut beside = room.names();
+            beside.remove("out.stl");
+            assert!(beside.len() <= usize::from(old.is_some()), "kill {kill}: {beside:?}");
+            assert!(beside.iter().all(|name| name.starts_with(TEMPORARY)), "kill {kill}: {beside:?}");
+            temporaries += beside.len();
+        }
+    }
+    assert!(room.command(JBT).args(arguments).status().expect("it runs").success());
+    assert_eq!(
+        room.names().into_iter().collect::<Vec<_>>(),
+        ["out.stl"],
+        "the next run removes what is left"
+    );
+    println!("{} kills of {whole:?}: {finished} too late, {temporaries} temporaries", 2 * KILLS);
+    assert!(finished < KILLS, "most kills come in time");
+}

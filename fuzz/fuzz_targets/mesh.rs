@@ -1,0 +1,13 @@
+//! The target `mesh`.
+#![no_main]
+
+use std::sync::LazyLock;
+
+use jbt_targets::Target;
+use libfuzzer_sys::fuzz_target;
+
+thread_local! {
+    static TARGET: LazyLock<Target> = LazyLock::new(|| jbt_targets::target("mesh"));
+}
+
+fuzz_target!(|bytes: &[u8]| TARGET.with(|target| target.run(bytes)));
