@@ -53,10 +53,10 @@ struct Checked {
     scene: LoadedScene,
     tree: CheckedTree,
     instances: u64,
-    /// The commands that its programs are too large for, and why.
-    too_large: Vec<(&'static str, String)>,
     /// What is known of its parts, if that was asked for.
     parts: Option<PartFindings>,
+    /// The commands that its programs are too large for, and why.
+    too_large: Vec<(&'static str, String)>,
 }
 
 /// What commands do with a scene.
@@ -84,13 +84,12 @@ fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Resu
         return Err(scene.failure(why));
     }
     let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
-    let evaluator = scene.evaluator(&compiled, query)?;
+    let instances = scene.evaluator(&compiled, query)?.evaluations_per_point();
     let too_large = COMMANDS.into_iter();
     let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
     let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
     let parts = arguments.overlaps.then(compare).transpose()?;
-    let instances = evaluator.evaluations_per_point();
-    Ok(Checked { scene, tree, instances, too_large, parts })
+    Ok(Checked { scene, tree, instances, parts, too_large })
 }
 
 /// What has been found out about the files so far.
@@ -150,44 +149,8 @@ impl Checked {
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
-    /// The commands that its programs are too large for, and why.
-    too_large: Vec<(&'static str, String)>,
-    /// What is known of its parts, if that was asked for.
-    parts: Option<PartFindings>,
-}
-
-/// What commands do with a scene.
-const COMMANDS: [(&str, Task); 7] = [
-    ("eval", Task::Points(Query::FIELD)),
-    ("eval --query all", Task::Points(Query::ALL)),
-    ("mesh", Task::Mesh),
-    ("render", Task::Rays(Query::SURFACE)),
-    ("contour", Task::Slices(Query::ATTRIBUTES)),
-    ("sample", Task::Samples(Query::FIELD)),
-    ("stats", Task::Solid),
-];
-
-fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = LoadedScene::load(path)?;
-    scene.warn(quiet || arguments.json);
-    let tree = scene.check()?;
-    // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
-    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
-    let refused = refused.map_err(|error| scene.failure(&error))?;
-    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
-    if let Some(why) = why(Task::Points(Query::FIELD)) {
-        // Then there is nothing to do with it.
-        return Err(scene.failure(why));
-    }
-    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
-    let evaluator = scene.evaluator(&compiled, query)?;
-    let too_large = COMMANDS.into_iter();
-    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
-    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
-    let parts = arguments.overlaps.then(compare).transpose()?;
-    let instances = evaluator.evaluations_per_point();
-    Ok(Checked { scene, tree, instances, too_large, parts })
+            "overlaps": self.parts.as_ref().map(PartFindings::json),
+            "too_large_for": self.too_large.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         })
     }
 
@@ -210,44 +173,11 @@ fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Resu
         }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
-    /// The commands that its programs are too large for, and why.
-    too_large: Vec<(&'static str, String)>,
-    /// What is known of its parts, if that was asked for.
-    parts: Option<PartFindings>,
-}
-
-/// What commands do with a scene.
-const COMMANDS: [(&str, Task); 7] = [
-    ("eval", Task::Points(Query::FIELD)),
-    ("eval --query all", Task::Points(Query::ALL)),
-    ("mesh", Task::Mesh),
-    ("render", Task::Rays(Query::SURFACE)),
-    ("contour", Task::Slices(Query::ATTRIBUTES)),
-    ("sample", Task::Samples(Query::FIELD)),
-    ("stats", Task::Solid),
-];
-
-fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = LoadedScene::load(path)?;
-    scene.warn(quiet || arguments.json);
-    let tree = scene.check()?;
-    // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
-    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
-    let refused = refused.map_err(|error| scene.failure(&error))?;
-    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
-    if let Some(why) = why(Task::Points(Query::FIELD)) {
-        // Then there is nothing to do with it.
-        return Err(scene.failure(why));
-    }
-    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
-    let evaluator = scene.evaluator(&compiled, query)?;
-    let too_large = COMMANDS.into_iter();
-    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
-    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
-    let parts = arguments.overlaps.then(compare).transpose()?;
-    let instances = evaluator.evaluations_per_point();
-    Ok(Checked { scene, tree, instances, too_large, parts })
+        out.push_str(&self.parts.as_ref().map_or_else(String::new, PartFindings::text));
+        if let Some((_, why)) = self.too_large.first() {
+            let names: Vec<&str> = self.too_large.iter().map(|(name, _)| *name).collect();
+            let _ = write!(out, "\n  too large    for {}: {}", names.join(", "), escape(why));
+        }
         out
     }
 }
