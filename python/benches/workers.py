@@ -57,7 +57,7 @@ def on_workers(count: int, work: Callable[[], Any]) -> tuple[float, Any]:
 def table(name: str, whole: Callable[[], jbt.Mesh], parts: Callable[[], jbt.Mesh], only: int) -> None:
     seconds, mesh = timed(whole)
     wanted = digest(mesh)
-    print(f"{name}: {mesh}\n  in one process {seconds:.1f} s")
+    print(f"{name}: {mesh}\n  in one process {seconds:.1f} s", flush=True)
     first = 0.0
     for count in (only,) if only else (1, 2, 4):
         took, made = on_workers(count, parts)
