@@ -28,7 +28,10 @@ fn documents() -> Vec<(String, String)> {
         }
     }
     names.sort();
-    names.into_iter().map(|name| (name.clone(), fs::read_to_string(root().join(name)).expect("text"))).collect()
+    names
+        .into_iter()
+        .map(|name| (name.clone(), fs::read_to_string(root().join(name)).expect("text")))
+        .collect()
 }
 
 /// The claims of a text: what is claimed, and what gives it.
@@ -74,14 +77,21 @@ fn written(number: f64) -> Vec<String> {
         }
         grouped.push(digit);
     }
-    vec![grouped, format!("{} MiB", number / 1_048_576.0), format!("{number:e}"), format!("2^{}", number.log2())]
+    vec![
+        grouped,
+        format!("{} MiB", number / 1_048_576.0),
+        format!("{number:e}"),
+        format!("2^{}", number.log2()),
+    ]
 }
 
 /// How many files there are of a pattern, as `examples/*.jbt`.
 fn count(pattern: &str) -> usize {
     let (folder, ending) = pattern.split_once('*').unwrap_or_else(|| panic!("{pattern} has a star"));
     let entries = fs::read_dir(root().join(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
-    entries.filter(|entry| entry.as_ref().is_ok_and(|one| one.file_name().to_string_lossy().ends_with(ending))).count()
+    entries
+        .filter(|entry| entry.as_ref().is_ok_and(|one| one.file_name().to_string_lossy().ends_with(ending)))
+        .count()
 }
 
 /// Panics unless a claim holds.
@@ -90,7 +100,9 @@ fn check(document: &str, claimed: &str, by: &str) {
     if let Some(pattern) = by.strip_prefix("count ") {
         let words: Vec<&str> = claimed.split_whitespace().collect();
         assert!(words.contains(&count(pattern).to_string().as_str()), "{what}: there are {}", count(pattern));
-    } else if let Some((expected, command)) = by.strip_prefix('"').and_then(|rest| rest.split_once("\": jbt ")) {
+    } else if let Some((expected, command)) =
+        by.strip_prefix('"').and_then(|rest| rest.split_once("\": jbt "))
+    {
         let begin = Instant::now();
         let output = Command::new(env!("CARGO_BIN_EXE_jbt"))
             .args(command.split_whitespace())
@@ -104,9 +116,14 @@ fn check(document: &str, claimed: &str, by: &str) {
         assert!(begin.elapsed() < Duration::from_secs(20), "{what}: that took {:?}", begin.elapsed());
     } else {
         let limits = limits();
-        let number = limits.get(by).unwrap_or_else(|| panic!("{what}, which is no limit of ir/src/limits.rs"));
+        let number =
+            limits.get(by).unwrap_or_else(|| panic!("{what}, which is no limit of ir/src/limits.rs"));
         let ways = written(*number);
-        assert!(ways.iter().any(|way| claimed.contains(way.as_str())), "{what}, which is {}", ways.join(" or "));
+        assert!(
+            ways.iter().any(|way| claimed.contains(way.as_str())),
+            "{what}, which is {}",
+            ways.join(" or ")
+        );
     }
 }
 
@@ -140,18 +157,26 @@ fn promises_name_tests_that_are_there() {
     ];
     for row in rows {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        let [_, _, promise, figure, command, date, machine, _] = cells[..] else { panic!("seven bars: {row}") };
+        let [_, _, promise, figure, command, date, machine, _] = cells[..] else {
+            panic!("seven bars: {row}")
+        };
         assert!([promise, figure, date, machine].iter().all(|cell| !cell.is_empty()), "{row}");
         let words: Vec<&str> = command.trim_matches('`').split_whitespace().collect();
-        let after = |flag: &str| words.iter().position(|word| *word == flag).and_then(|at| words.get(at + 1)).copied();
+        let after = |flag: &str| {
+            words.iter().position(|word| *word == flag).and_then(|at| words.get(at + 1)).copied()
+        };
         if let (Some(package), Some(test)) = (after("-p"), after("--test")) {
-            let folder = packages.iter().find(|(name, _)| *name == package).unwrap_or_else(|| panic!("{row}")).1;
+            let folder =
+                packages.iter().find(|(name, _)| *name == package).unwrap_or_else(|| panic!("{row}")).1;
             let path = root().join(folder).join("tests");
-            let is_there = path.join(format!("{test}.rs")).exists() || path.join(test).join("main.rs").exists();
+            let is_there =
+                path.join(format!("{test}.rs")).exists() || path.join(test).join("main.rs").exists();
             assert!(is_there, "{package} has no test {test}: {row}");
-        } else {
+        } else if let Some(program) = after("--bin") {
+            assert!(root().join(format!("fuzz/targets/src/bin/{program}.rs")).exists(), "{row}");
+        } else if !command.contains("cargo deny") {
             let script = words.iter().find(|word| word.contains('/')).unwrap_or_else(|| panic!("{row}"));
-            assert!(root().join(script).exists() || script.starts_with("target/"), "{script} is not there: {row}");
+            assert!(root().join(script).exists(), "{script} is not there: {row}");
         }
     }
 }
