@@ -7,6 +7,7 @@ mod render;
 mod scene;
 mod space;
 mod tools;
+mod wanted;
 mod words;
 mod work;
 
@@ -14,12 +15,14 @@ pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
-pub use scene::{SceneArguments, SceneOptions};
+pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use tools::{
-    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
-    StatsArguments,
+    CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, DiffArguments, ManArguments,
+    ShowArguments, StatsArguments,
 };
+pub use wanted::Wanted;
+use wanted::WantedParser;
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
@@ -30,7 +33,7 @@ use jbt::export::{ColorEncoding, Format, LengthUnit, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
-use words::{queries, words};
+use words::words;
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -47,6 +50,10 @@ pub struct Arguments {
     /// Each thread has a row, with a bar for each stage of the work and for each part of a stage.
     #[arg(long, value_name = "FILE.json", global = true)]
     pub trace: Option<PathBuf>,
+    /// The most memory to use, as 2000000000, 512M or 1.5G; work that needs more ends with code 3 [default:
+    /// three quarters of what is available]
+    #[arg(long, value_name = "BYTES", global = true, value_parser = crate::memory::bytes)]
+    pub memory: Option<u64>,
 }
 
 fn after_help() -> String {
@@ -73,7 +80,8 @@ Examples:
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
   jbt stats hero.jbt
-  jbt check hero.jbt";
+  jbt check hero.jbt
+  jbt diff old.jbt new.jbt";
 
 /// The commands.
 #[derive(Subcommand, Debug)]
@@ -98,6 +106,8 @@ pub enum Command {
     Stats(StatsArguments),
     /// Report everything that is wrong with scenes
     Check(CheckArguments),
+    /// Say what two scenes differ in, item by item, and where their fields do
+    Diff(DiffArguments),
     /// Print a script by which a shell completes the words of jbt
     Completions(CompletionsArguments),
     /// Write manual pages into a folder
@@ -230,9 +240,9 @@ pub struct SampleArguments {
     /// Where the samples go.
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -250,9 +260,9 @@ pub struct EvalArguments {
     /// CSV file of the points; `-` is the standard input
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,

@@ -1,12 +1,13 @@
 //! `jbt check`: everything that is wrong with scenes, or a few lines about each that nothing is wrong with.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use jbt::diagnostic::escape;
 use jbt::tree::Bounds;
 use jbt::tree::NodeKind;
-use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Query};
+use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Parameter, Query, Task};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};
@@ -14,6 +15,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
+use crate::overlaps::PartFindings;
 use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 
@@ -25,7 +27,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     let mut told = Findings::default();
     for path in &arguments.scenes {
         let scene = SceneArguments { path: path.clone(), options: arguments.options.clone() };
-        let checked = check(&scene, quiet || arguments.json);
+        let checked = check(&scene, arguments, quiet);
         if arguments.json {
             told.add(path, &checked);
         }
@@ -51,15 +53,43 @@ struct Checked {
     scene: LoadedScene,
     tree: CheckedTree,
     instances: u64,
+    /// What is known of its parts, if that was asked for.
+    parts: Option<PartFindings>,
+    /// The commands that its programs are too large for, and why.
+    too_large: Vec<(&'static str, String)>,
 }
 
-fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = LoadedScene::load(arguments)?;
-    scene.warn(quiet);
+/// What commands do with a scene.
+const COMMANDS: [(&str, Task); 7] = [
+    ("eval", Task::Points(Query::FIELD)),
+    ("eval --query all", Task::Points(Query::ALL)),
+    ("mesh", Task::Mesh),
+    ("render", Task::Rays(Query::SURFACE)),
+    ("contour", Task::Slices(Query::ATTRIBUTES)),
+    ("sample", Task::Samples(Query::FIELD)),
+    ("stats", Task::Solid),
+];
+
+fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = LoadedScene::load(path)?;
+    scene.warn(quiet || arguments.json);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let evaluator = scene.evaluator(&Compiler::for_engine(Engine::Scalar).compile(&tree), Query::ALL)?;
-    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point() })
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let refused = compiled.too_large_for(&COMMANDS.map(|(_, task)| task));
+    let refused = refused.map_err(|error| scene.failure(&error))?;
+    let why = |task: Task| refused.iter().find(|(refused, _)| *refused == task).map(|(_, why)| why);
+    if let Some(why) = why(Task::Points(Query::FIELD)) {
+        // Then there is nothing to do with it.
+        return Err(scene.failure(why));
+    }
+    let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
+    let instances = scene.evaluator(&compiled, query)?.evaluations_per_point();
+    let too_large = COMMANDS.into_iter();
+    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let parts = arguments.overlaps.then(compare).transpose()?;
+    Ok(Checked { scene, tree, instances, parts, too_large })
 }
 
 /// What has been found out about the files so far.
@@ -107,15 +137,20 @@ impl Checked {
         let bounds =
             (!support.is_empty() && support.is_finite()).then(|| [support.low(), support.high()].concat());
         let attribute = |group: &AttributeGroup| json!({ "name": &*group.name, "width": group.width(), "mixing": group.mixing.name() });
+        let controls = tree.parameters().iter().map(|p| (p.name().to_owned(), control(p)));
         json!({
             "nodes": tree.nodes().len(),
             "leaves": self.leaves(),
             "instances": self.instances,
             "iso": tree.iso(),
             "parameters": parameters.collect::<Map<String, Value>>(),
+            "names": names(tree),
+            "controls": controls.collect::<Map<String, Value>>(),
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
+            "overlaps": self.parts.as_ref().map(PartFindings::json),
+            "too_large_for": self.too_large.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         })
     }
 
@@ -132,18 +167,67 @@ impl Checked {
         }
         let _ =
             writeln!(out, "  bounds       {}{}", bounds(tree.support()), lattice::origin_line(tree.origin()));
+        let names = names(tree);
+        if !names.is_empty() {
+            let _ = writeln!(out, "  names        {}", shortened(&names));
+        }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
+        out.push_str(&self.parts.as_ref().map_or_else(String::new, PartFindings::text));
+        if let Some((_, why)) = self.too_large.first() {
+            let names: Vec<&str> = self.too_large.iter().map(|(name, _)| *name).collect();
+            let _ = write!(out, "\n  too large    for {}: {}", names.join(", "), escape(why));
+        }
         out
     }
+}
+
+/// The names of the nodes, each once.
+fn names(tree: &CheckedTree) -> BTreeSet<&str> {
+    tree.names().collect()
+}
+
+/// The first of these names, and how many more there are.
+fn shortened(names: &BTreeSet<&str>) -> String {
+    const SHOWN: usize = 20;
+    let mut shown: Vec<String> = names.iter().take(SHOWN).map(|name| escape(name)).collect();
+    if names.len() > SHOWN {
+        shown.push(format!("and {} more", names.len() - SHOWN));
+    }
+    shown.join(", ")
+}
+
+/// What an interface needs to know of a parameter besides its value: `fixed` ones take reading the scene
+/// again.
+fn control(parameter: &Parameter) -> Value {
+    let range = parameter.range();
+    json!({
+        "default": parameter.default(),
+        "low": range.map(|range| range.low),
+        "high": range.map(|range| range.high),
+        "step": range.and_then(|range| range.step),
+        "label": parameter.label(),
+        "fixed": parameter.fixture().is_some(),
+    })
+}
+
+/// The range of a parameter, if it has one.
+fn in_range(parameter: &Parameter) -> String {
+    let step = |step: f64| format!(" step {step}");
+    parameter.range().map_or_else(String::new, |range| {
+        format!(" in {} .. {}{}", range.low, range.high, range.step.map_or_else(String::new, step))
+    })
 }
 
 /// The parameters, and of derived and set ones their present values.
 fn parameters(tree: &CheckedTree) -> String {
     const SHOWN: usize = 20;
     let all = tree.parameters();
-    let mut shown: Vec<String> =
-        all.iter().take(SHOWN).map(|p| format!("{} = {}", escape(p.name()), p.value())).collect();
+    let mut shown: Vec<String> = all
+        .iter()
+        .take(SHOWN)
+        .map(|p| format!("{} = {}{}", escape(p.name()), p.value(), in_range(p)))
+        .collect();
     if all.len() > SHOWN {
         shown.push(format!("and {} more", all.len() - SHOWN));
     }

@@ -7,7 +7,7 @@
 //! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`convert`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
-//! | [`signals`], [`threads`] | what stops the work, and what does it |
+//! | [`signals`], [`threads`], [`memory`] | what stops the work, what does it, and where |
 //! | [`timeline`] | which thread did what when |
 //! | [`failure`], [`message`] | what went wrong, and the exit code for it |
 
@@ -16,15 +16,18 @@ mod check;
 mod contour;
 mod convert;
 mod count;
+mod diff;
 mod eval;
 mod failure;
 mod formats;
 mod lattice;
 mod logger;
 mod manual;
+mod memory;
 mod mesh;
 mod message;
 mod output;
+mod overlaps;
 mod points;
 mod progress;
 mod render;
@@ -50,15 +53,17 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let start = Instant::now();
+    memory::prepare();
     signals::install();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
     let quiet = arguments.quiet;
+    memory::limit(arguments.memory);
     logger::install(quiet);
-    threads::prepare();
-    let work = || run(&arguments.command, quiet, start);
+    let watched = || signals::token().watches(|| run(&arguments.command, quiet, start));
+    let work = || threads::run_all(watched);
     let done = match &arguments.trace {
         Some(path) => timeline::record(path, work),
         None => work(),
@@ -86,6 +91,7 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
         Command::Count(arguments) => count::run(arguments, quiet),
         Command::Stats(arguments) => stats::run(arguments, quiet, start),
         Command::Check(arguments) => check::run(arguments, quiet),
+        Command::Diff(arguments) => diff::run(arguments, quiet),
         Command::Completions(arguments) => manual::completions(arguments),
         Command::Man(arguments) => manual::man(arguments, quiet),
     }

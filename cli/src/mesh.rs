@@ -20,7 +20,7 @@ use crate::stages;
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
-    let options = options(arguments, destination.kind)?;
+    let mut options = options(arguments, destination.kind)?;
     let settings = Polygonize {
         thin_parts: !arguments.no_thin,
         verify: arguments.verify,
@@ -29,6 +29,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
+    options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
@@ -72,7 +73,7 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
     if arguments.unit.is_some() && format.conventions().unit.is_none() {
         return Err(Failure::Usage(format!("a .{format} file states no unit that --unit could be about")));
     }
-    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, unit: arguments.unit })
+    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, unit: arguments.unit, name: None })
 }
 
 /// What may not be as people expect.

@@ -61,6 +61,12 @@ impl Output {
             let file = AtomicFile::create(path, destination.replace);
             let file = file.map_err(|error| Failure::io("write", &name, error))?;
             file.temporary().into_iter().for_each(signals::begin);
+            if file.is_in_place() {
+                warn(&format!(
+                    "the folder of {name} takes no new file: {name} is written in place, and half a file is left \
+                     if that ends early"
+                ));
+            }
             OutputTarget::File(file)
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })

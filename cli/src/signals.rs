@@ -8,6 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use jbt::CancelToken;
 
@@ -17,6 +18,10 @@ static CAUGHT: AtomicI32 = AtomicI32::new(0);
 static TOKEN: LazyLock<CancelToken> = LazyLock::new(CancelToken::new);
 /// Temporary names that have to go if the process ends. Whoever holds the lock is not stopped meanwhile.
 static BEGUN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Milliseconds that a process without memory waits for the list of them.
+const TRIES: usize = 300;
+/// Files that a command begins: room for their names is there from the beginning.
+const FILES: usize = 16;
 
 /// Cancelled by the first signal.
 pub fn token() -> &'static CancelToken {
@@ -39,7 +44,27 @@ pub fn check() -> io::Result<()> {
 
 /// Notes a temporary name.
 pub fn begin(temporary: &Path) {
-    begun().push(temporary.to_owned());
+    let temporary = temporary.to_owned();
+    let mut begun = begun();
+    begun.push(temporary);
+}
+
+/// Removes what has been begun, for a process that has no more memory. None is asked for.
+pub fn remove_begun() {
+    for _ in 0..TRIES {
+        match BEGUN.try_lock() {
+            Ok(files) => {
+                for temporary in files.iter() {
+                    let _ = std::fs::remove_file(temporary);
+                }
+                // Held to the end: no file gets its name any more.
+                std::mem::forget(files);
+                return;
+            }
+            // This thread may hold it: then its file has a name already, or gets none.
+            Err(_) => std::thread::sleep(Duration::from_millis(1)),
+        }
+    }
 }
 
 /// Puts files in their places; no signal ends the process on the way.
@@ -64,7 +89,6 @@ pub use on_unix::{install, name};
 mod on_unix {
     use std::sync::Arc;
     use std::sync::atomic::AtomicBool;
-    use std::time::Duration;
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
@@ -77,6 +101,7 @@ mod on_unix {
 
     /// Listens to signals from now on. Where that cannot be had they do what they do to any program.
     pub fn install() {
+        begun().reserve(FILES);
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
         // `nohup` and shells without job control have programs ignore a signal that is not meant for them.
         let heard: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&one| !is_ignored(one)).collect();

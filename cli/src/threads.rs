@@ -5,7 +5,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::output::warn;
 
-/// So many threads; no pool of their own, but one thread for each processor, if no number is given.
+/// So many threads; the threads that are there, if no number is given.
 pub struct Threads(Option<ThreadPool>);
 
 impl Threads {
@@ -29,19 +29,21 @@ impl Threads {
     }
 }
 
-/// Bounds the threads of work without a pool of its own: `RAYON_NUM_THREADS` says how many there are.
-pub fn prepare() {
-    let wanted = std::env::var("RAYON_NUM_THREADS").ok().and_then(|words| words.parse::<usize>().ok());
-    if let Some(wanted) = wanted.filter(|&wanted| wanted > MAX_THREADS) {
-        // The pool of the process can be built once, and so after another one has shown that it can be had.
-        let tried = started(clipped(wanted, "RAYON_NUM_THREADS"));
-        let global = match tried.as_ref().map(ThreadPool::current_num_threads) {
-            Some(threads) => ThreadPoolBuilder::new().num_threads(threads),
-            None => ThreadPoolBuilder::new().num_threads(1).use_current_thread(),
-        };
-        drop(tried);
-        if let Err(error) = global.build_global() {
-            warn(&error.to_string());
+/// Does all work on threads for it: one for each processor, or as many as `RAYON_NUM_THREADS` says. The pool
+/// that rayon makes by itself is none for us: where its threads cannot be had it panics.
+pub fn run_all<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let told = std::env::var("RAYON_NUM_THREADS").ok().and_then(|words| words.parse::<usize>().ok());
+    let wanted = match told.filter(|&told| told > 0) {
+        Some(told) => clipped(told, "RAYON_NUM_THREADS"),
+        None => std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS),
+    };
+    match started(wanted) {
+        Some(pool) => pool.install(work),
+        None => {
+            // The pool of the calling thread alone starts none.
+            let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+            alone.unwrap_or_else(|error| warn(&error.to_string()));
+            work()
         }
     }
 }

@@ -31,6 +31,7 @@ use crate::entity::{Block, Entity, Inst, Table, Value, Values};
 use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 use crate::op::{Domain, Op, Type};
 use crate::origin::{Origin, Part};
+use crate::watch::look;
 
 /// What makes two instructions the same.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -298,6 +299,7 @@ impl FunctionBuilder {
     }
 
     fn insert(&mut self, key: Key, depth: usize, kind: InstKind, type_: Type) -> Value {
+        look();
         if !self.shares {
             let value = self.new_value(type_, depth);
             self.append(self.open.len() - 1, kind, Values::from_slice(&[value]));

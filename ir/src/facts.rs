@@ -65,6 +65,7 @@ impl<F: Fact> Search<'_, F> {
     fn block(&mut self, block: Block) {
         let function = self.function;
         for &inst in &function.blocks[block].insts {
+            crate::watch::look();
             let data = &function.insts[inst];
             let facts = match &data.kind {
                 InstKind::Op { op, args } => {

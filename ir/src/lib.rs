@@ -28,6 +28,7 @@ pub mod table;
 pub mod text;
 pub mod translate;
 pub mod verify;
+pub mod watch;
 
 pub use alone::RowFunction;
 pub use builder::FunctionBuilder;

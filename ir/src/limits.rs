@@ -6,6 +6,23 @@
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
+/// Bytes that each turn of a loop, each call of a definition, and each node of what it stands for count for,
+/// besides the text that is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer
+/// than the longest text.
+pub const EXPANSION_BYTES: usize = 128;
+/// Calls and loops of a text that may be open in each other.
+pub const MAX_EXPANSION_DEPTH: usize = 256;
+/// Files that may include each other, each the next one.
+pub const MAX_INCLUDE_DEPTH: usize = 16;
+/// Arguments of one definition.
+pub const MAX_ARGUMENTS: usize = 64;
+/// Lists in lists.
+pub const MAX_LIST_DEPTH: usize = 8;
+/// Files that one scene may name, directly or through files that it names.
+pub const MAX_NAMED_FILES: usize = 1024;
+/// Bytes of all files that one scene names: particles and grids are some hundred megabytes, and stay in
+/// memory. What is read as text has [`MAX_SCENE_BYTES`], all files of a scene together.
+pub const MAX_NAMED_BYTES: usize = 1 << 30;
 /// Numbers and strings of one request of a RIB file: 8 bytes each, kept until the request has been read.
 pub const MAX_LIST_NUMBERS: usize = 1 << 22;
 /// Steps of a scene that is a program, as those of POV-Ray are: directives that run, components, calls of
@@ -26,6 +43,10 @@ pub const MAX_INSTANCES: usize = 4_000_000;
 /// Particles of one model, which are rows and no nodes: each time that they are used. A row keeps some 200
 /// bytes while its model is meshed.
 pub const MAX_PARTICLES: usize = 1 << 27;
+/// Work that one point of a model is foreseen to take besides a leaf or an operator for each use of a node:
+/// pieces of curves by the numbers that each has, and operations of formulas, wherever they reach. A unit takes
+/// about two nanoseconds, so a mesh of a million points of which nothing can be left out takes minutes.
+pub const MAX_POINT_WORK: usize = 1 << 17;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
@@ -67,9 +88,11 @@ pub const MAX_ROW_COPIES: usize = 1 << 21;
 /// the function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and
 /// its frame is limited.
 pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
-/// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are
-/// given. A function that needs more is interpreted.
+/// Bytes of the frame of one call of machine code. A function that needs more is interpreted.
 pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
+/// Bytes of such a frame on the caller's stack: a fraction of the smallest stacks that threads are given, 64
+/// KiB. A larger frame is in memory that belongs to the kernel.
+pub const MAX_STACK_FRAME_BYTES: usize = 16 << 10;
 /// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
 /// Bricks of one mesh: the field is kept at all points of each, 4 bytes a point.

@@ -363,6 +363,12 @@ macro_rules! for_each_op {
 
             /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
             StopGradient stop_gradient(a: real) -> real, renames;
+
+            // ── ranges ───────────────────────────────────────────────────────────────────────────────
+
+            /// `a`, bit for bit. Over ranges it is the number at the low end of `a`, and NaN unless both ends
+            /// are finite. So a formula that grows with `a` gives a bound of itself: its value there.
+            LowEnd low_end(a: real) -> real, renames;
         }
     };
 }

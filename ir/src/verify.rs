@@ -264,6 +264,7 @@ impl<'a> Verifier<'a> {
     }
 
     fn inst(&mut self, inst: Inst) {
+        crate::watch::look();
         let place = Place::Inst(inst);
         let Some(seen) = self.insts.get_mut(inst.index()) else {
             return self.error(place, 1, format!("{inst} does not exist"));

@@ -11,7 +11,7 @@ pub(crate) struct CodeBlob {
     /// Bytes of `bytes` that are constants, at its end.
     #[cfg_attr(not(any(feature = "listing", test)), expect(dead_code, reason = "for listings"))]
     pub(crate) constants: usize,
-    /// Bytes of stack.
+    /// Bytes of the frame.
     pub(crate) frame_bytes: usize,
     /// Points in a block.
     pub(crate) lanes: usize,

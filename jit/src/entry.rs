@@ -42,7 +42,9 @@ impl Kernel {
         self.code.bytes()
     }
 
-    /// Bytes of stack that a run takes.
+    /// Bytes that a run takes for its frame: of the caller's stack up to
+    /// [`MAX_STACK_FRAME_BYTES`](jbt_ir::limits::MAX_STACK_FRAME_BYTES), else of memory that belongs to the
+    /// kernel.
     #[must_use]
     pub fn frame_bytes(&self) -> usize {
         self.code.frame_bytes()

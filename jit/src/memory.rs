@@ -7,7 +7,12 @@
 //!
 //! No page is writable and executable at once: the module writes the code, then finalizing takes the right to
 //! write away and gives the right to execute.
+//!
+//! A large frame is no part of the caller's stack, which may be a small one: the code runs on memory that
+//! belongs to it ([`FrameMemory`]), and the stack pointer is put back when it returns.
 #![allow(unsafe_code)]
+
+use std::sync::Mutex;
 
 use cranelift_codegen::Context;
 use cranelift_codegen::isa::OwnedTargetIsa;
@@ -56,15 +61,40 @@ pub(crate) struct MachineCode {
     rest: Option<EntryPoint>,
     bytes: usize,
     frame_bytes: usize,
+    /// Memory for large frames of runs that have ended, one for each thread that ran at once.
+    frames: Mutex<Vec<FrameMemory>>,
     /// Never looked at again: kept so that the code stays where it is.
     _pages: Pages,
+}
+
+/// Memory that one run of code takes for its stack.
+struct FrameMemory(Vec<u128>);
+
+impl FrameMemory {
+    /// Bytes besides the frame: the registers that code saves, and what a handler of a signal takes that
+    /// comes meanwhile, which the kernel gives all vector registers.
+    const BESIDES: usize = 64 << 10;
+
+    /// Memory for a frame of so many bytes, if there is as much.
+    fn new(frame_bytes: usize) -> Option<Self> {
+        let words = (frame_bytes + Self::BESIDES).div_ceil(size_of::<u128>());
+        let mut memory = Vec::new();
+        memory.try_reserve_exact(words).ok()?;
+        Some(Self(memory))
+    }
+
+    /// Where a stack begins that grows down into it: a multiple of 16.
+    fn top(&mut self) -> *mut u8 {
+        let words = self.0.capacity();
+        self.0.as_mut_ptr().wrapping_add(words).cast()
+    }
 }
 
 // SAFETY: the module is `Send`, and the addresses are those of memory which belongs to it.
 unsafe impl Send for MachineCode {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory
-// but what its arguments name and the stack of the thread that calls it. The module, which is not `Sync`,
-// cannot be reached.
+// but what its arguments name, the stack of the thread that calls it, and memory for frames, which a thread
+// has for itself during a run. The module, which is not `Sync`, cannot be reached.
 unsafe impl Sync for MachineCode {}
 
 impl MachineCode {
@@ -84,7 +114,7 @@ impl MachineCode {
         }
         module.finalize_definitions()?;
         let blocks = EntryPoint { address: module.get_finalized_function(function), lanes };
-        Ok(Self { blocks, rest: None, bytes, frame_bytes, _pages: pages })
+        Ok(Self { blocks, rest: None, bytes, frame_bytes, frames: Mutex::default(), _pages: pages })
     }
 
     /// Makes finished bytes executable. The caller has asked the CPU for what they need.
@@ -112,6 +142,7 @@ impl MachineCode {
             rest: rest_function.map(entry),
             bytes: both().map(|blob| blob.bytes.len()).sum(),
             frame_bytes: both().map(|blob| blob.frame_bytes).max().unwrap_or(0),
+            frames: Mutex::default(),
             _pages: pages,
         })
     }
@@ -126,9 +157,18 @@ impl MachineCode {
         self.bytes
     }
 
-    /// Bytes of stack.
+    /// Bytes of the frame.
     pub(crate) fn frame_bytes(&self) -> usize {
         self.frame_bytes
+    }
+
+    /// Memory for a frame that is too large for the caller's stack. Where there is none it has to do.
+    fn take_frame(&self) -> Option<FrameMemory> {
+        if self.frame_bytes <= limits::MAX_STACK_FRAME_BYTES {
+            return None;
+        }
+        let kept = self.frames.lock().ok().and_then(|mut kept| kept.pop());
+        kept.or_else(|| FrameMemory::new(self.frame_bytes))
     }
 
     /// Where the code is.
@@ -142,6 +182,8 @@ impl MachineCode {
     pub(crate) fn call(&self, KernelArguments { planes, bytes, tables }: KernelArguments<'_>) {
         let block = self.blocks.lanes * size_of::<f32>();
         let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };
+        let mut frame = self.take_frame();
+        let stack = frame.as_mut().map_or(std::ptr::null_mut(), FrameMemory::top);
         for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
             let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
             // SAFETY: the contract of `MachineCode` says that this is a function of the ABI that `enter`
@@ -149,13 +191,17 @@ impl MachineCode {
             // each input and output, at least one block long and whole blocks; outputs come from exclusive
             // borrows, so that no other plane overlaps them; the tables have been checked against the
             // function, the selection fits them, and both are borrowed by the caller. What else the code
-            // writes is its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page
-            // by page: a stack that is too short for it ends at the guard page. What is left behind whole
-            // blocks ends where the planes end, and is whole smaller blocks, as larger ones are.
-            unsafe { enter(entry.address, planes.as_ptr(), bytes, tables.as_ptr()) };
+            // writes is its frame. A small one is on the caller's stack, and is touched page by page: a stack
+            // that is too short for it ends at the guard page. A large one is in `frame`, which is longer and
+            // belongs to this run alone. What is left behind whole blocks ends where the planes end, and is
+            // whole smaller blocks, as larger ones are.
+            unsafe { enter(entry.address, planes.as_ptr(), bytes, tables.as_ptr(), stack) };
             for plane in &mut *planes {
                 *plane = plane.wrapping_byte_add(bytes);
             }
+        }
+        if let (Some(frame), Ok(mut kept)) = (frame, self.frames.lock()) {
+            kept.push(frame);
         }
     }
 }
@@ -172,19 +218,31 @@ static DEFAULT_MXCSR: u32 = 0x1F80;
 ///
 /// # Safety
 /// `code` is a System V function of these three parameters, which may do what it does with these arguments,
-/// does not unwind, and leaves the floating-point environment as it is.
+/// does not unwind, and leaves the floating-point environment as it is. `stack` is null, or the end of memory
+/// that nothing else uses, a multiple of 16, and there is as much of it as `code` takes.
 #[cfg(target_arch = "x86_64")]
-unsafe fn enter(code: *const u8, planes: *const *const f32, bytes: usize, tables: *const TableView) {
+unsafe fn enter(
+    code: *const u8,
+    planes: *const *const f32,
+    bytes: usize,
+    tables: *const TableView,
+    stack: *mut u8,
+) {
     let mut saved = 0_u32;
-    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it. r12 and r13 survive the
-    // call by its convention, and they point at two words that live here. Everything that the convention lets
-    // a callee change is named, and the environment, with its exception flags, is what it was.
+    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it, and as `stack` is. r12 to
+    // r14 survive the call by its convention; r12 and r13 point at two words that live here, r14 keeps the
+    // stack pointer. Everything that the convention lets a callee change is named, and the environment, with
+    // its exception flags, is what it was.
     unsafe {
         std::arch::asm!(
             "vzeroupper",
             "stmxcsr [r12]",
             "ldmxcsr [r13]",
+            "mov r14, rsp",
+            "test r15, r15",
+            "cmovnz rsp, r15",
             "call {code}",
+            "mov rsp, r14",
             "ldmxcsr [r12]",
             code = in(reg) code,
             in("rdi") planes,
@@ -192,6 +250,8 @@ unsafe fn enter(code: *const u8, planes: *const *const f32, bytes: usize, tables
             in("rdx") tables,
             in("r12") &raw mut saved,
             in("r13") &raw const DEFAULT_MXCSR,
+            out("r14") _,
+            in("r15") stack,
             clobber_abi("sysv64"),
         );
     }
@@ -202,7 +262,7 @@ unsafe fn enter(code: *const u8, planes: *const *const f32, bytes: usize, tables
 /// # Safety
 /// None is needed.
 #[cfg(not(target_arch = "x86_64"))]
-unsafe fn enter(_: *const u8, _: *const *const f32, _: usize, _: *const TableView) {
+unsafe fn enter(_: *const u8, _: *const *const f32, _: usize, _: *const TableView, _: *mut u8) {
     unreachable!("isa::host declines this processor");
 }
 

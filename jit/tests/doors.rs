@@ -301,6 +301,32 @@ fn a_frame_of_wide_code_that_is_too_large_is_refused() {
     }
 }
 
+/// The largest frames do not need the stack of the thread: 64 KiB of it are enough for every kernel.
+#[test]
+fn large_frames_run_on_small_stacks() {
+    let crowd = |bytes| crowd(MAX_JIT_FRAME_BYTES / bytes - 50);
+    let whole = Wide { pieces: Some(Pieces::One), ..Wide::STANDARD };
+    let inputs = [spicy_plane(6, 70)];
+    for level in Level::available().into_iter().filter(|&level| Wide::STANDARD.covers(level)) {
+        let crowd = crowd(4 * Wide::lanes(level));
+        let kernel = whole.kernel(&crowd, level).expect("the frame is as large as allowed");
+        assert!(kernel.frame_bytes() > 2 * (64 << 10), "{}", kernel.frame_bytes());
+        let expected = reference(&crowd, &Tables::default(), &inputs);
+        let kernel: Arc<dyn Program> = Arc::new(kernel);
+        let on_small_stack = || {
+            let work = || assert_same(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a small stack");
+            std::thread::scope(|scope| {
+                let two = [(); 2].map(|()| {
+                    let small = std::thread::Builder::new().stack_size(64 << 10);
+                    small.spawn_scoped(scope, work).expect("a thread")
+                });
+                two.into_iter().for_each(|thread| thread.join().expect("it ends"));
+            });
+        };
+        (0..3).for_each(|_| on_small_stack());
+    }
+}
+
 #[test]
 fn the_text_shows_the_loop_over_rows() {
     let text = Cranelift::STANDARD.clif(&function()).expect("it is within the limits");

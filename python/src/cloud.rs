@@ -1,8 +1,8 @@
-//! CloudArrays from arrays: one flat sum.
+//! Particles from arrays: one node, however many there are.
 
 use jbt::Tree;
-use jbt::tree::SkeletonKind;
-use jbt_model::written::{FieldNumber, Radius, Written, WrittenAttribute};
+use jbt_model::particles::{NumberArray, PerParticle};
+use jbt_model::written::{ParticleRadius, WrittenParticles};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -10,50 +10,19 @@ use pyo3::prelude::*;
 use crate::falloff::PyFalloff;
 use crate::model::PyModel;
 
-/// The arrays of particles: one number for all, or one for each.
-struct CloudArrays {
-    places: Vec<[f64; 3]>,
-    radii: Vec<f64>,
-    strengths: Vec<f64>,
-    colors: Option<Vec<[f64; 3]>>,
-}
-
-/// One of few or of many.
-fn of<T: Copy>(all: &[T], index: usize) -> T {
-    if all.len() == 1 { all[0] } else { all[index] }
-}
-
-/// The tree of particles.
-fn cloud(particles: &CloudArrays, falloff: &PyFalloff) -> Tree {
-    let leaf = |index: usize| {
-        let written = Written::Primitive {
-            skeleton: SkeletonKind::Point,
-            fields: vec![FieldNumber::Vector(particles.places[index].map(Into::into))],
-            falloff: falloff.0.clone(),
-            radius: Radius::Support(of(&particles.radii, index).into()),
-            strength: of(&particles.strengths, index).into(),
-        };
-        let leaf = Tree::new(written, Vec::new());
-        match &particles.colors {
-            Some(colors) if colors.len() > 1 => colored(leaf, colors[index]),
-            Some(_) | None => leaf,
-        }
-    };
-    let sum: Tree = (0..particles.places.len()).map(leaf).sum();
-    match particles.colors.as_deref() {
-        Some([color]) => colored(sum, *color),
-        Some(_) | None => sum,
+/// One number for all, or one for each.
+fn each(array: &PyReadonlyArray1<'_, f64>, count: usize) -> PyResult<PerParticle<jbt::Number>> {
+    let numbers = array.as_array().to_vec();
+    match numbers.as_slice() {
+        [one] => Ok(PerParticle::All((*one).into())),
+        all if all.len() == count => Ok(PerParticle::Each(numbers.into())),
+        _ => Err(PyValueError::new_err("expected one number for all particles, or one for each")),
     }
 }
 
-fn colored(tree: Tree, color: [f64; 3]) -> Tree {
-    let value = WrittenAttribute::Numbers(color.map(Into::into).to_vec());
-    Tree::new(Written::Attribute { name: "color".into(), value }, vec![tree])
-}
-
-/// Rows of three numbers.
-fn triples(array: &PyReadonlyArray2<'_, f64>) -> Vec<[f64; 3]> {
-    array.as_array().outer_iter().map(|row| [row[0], row[1], row[2]]).collect()
+/// The numbers of rows, one row after the other.
+fn flat(array: &PyReadonlyArray2<'_, f64>) -> Vec<f64> {
+    array.as_array().iter().copied().collect()
 }
 
 /// A sum of points. The package has checked shapes and numbers.
@@ -67,18 +36,22 @@ pub(crate) fn points(
     colors: Option<PyReadonlyArray2<'_, f64>>,
     falloff: &Bound<'_, PyFalloff>,
 ) -> PyResult<PyModel> {
-    let particles = CloudArrays {
-        places: triples(&places),
-        radii: radii.as_array().to_vec(),
-        strengths: strengths.as_array().to_vec(),
-        colors: colors.as_ref().map(triples),
-    };
-    let count = particles.places.len();
-    let fits = |length: usize| length == 1 || length == count;
-    let colors = particles.colors.as_ref().map_or(1, Vec::len);
-    if ![particles.radii.len(), particles.strengths.len(), colors].into_iter().all(fits) {
-        return Err(PyValueError::new_err("expected one number for all particles, or one for each"));
+    let positions = flat(&places);
+    let count = positions.len() / 3;
+    let radius = ParticleRadius::Support(each(&radii, count)?);
+    let strength = each(&strengths, count)?;
+    let colors = colors.as_ref().map(flat);
+    if colors.as_ref().is_some_and(|colors| colors.len() != 3 && colors.len() != 3 * count) {
+        return Err(PyValueError::new_err("expected one colour for all particles, or one for each"));
     }
-    let falloff = falloff.get().clone();
-    Ok(py.detach(move || PyModel::of(cloud(&particles, &falloff))))
+    let falloff = falloff.get().0.clone();
+    Ok(py.detach(move || {
+        let particles = WrittenParticles { strength, falloff, ..WrittenParticles::new(positions, radius) };
+        let tree = Tree::new(particles, Vec::new());
+        PyModel::of(match colors {
+            Some(colors) if colors.len() == 3 => tree.color([colors[0], colors[1], colors[2]]),
+            Some(colors) => tree.colors(NumberArray::from(colors)),
+            None => tree,
+        })
+    }))
 }

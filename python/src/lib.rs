@@ -25,6 +25,7 @@ mod model;
 mod number;
 mod picture;
 mod rays;
+mod remote;
 mod sample;
 mod solid;
 mod term;
@@ -49,6 +50,8 @@ mod _jbt {
     use crate::number::PyNumber;
     #[pymodule_export]
     use crate::picture::encode_png;
+    #[pymodule_export]
+    use crate::remote::{PyLattice, PyRowSource, PyShape, block_facts, cpu_level, join};
     #[pymodule_export]
     use crate::term::{PyTerm, call, coordinate, falloff_of};
     #[pymodule_export]

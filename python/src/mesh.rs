@@ -79,9 +79,8 @@ impl PyModel {
     }
 }
 
-/// A mesh and what it took.
-fn told(py: Python<'_>, made: Polygonized) -> PyResult<Bound<'_, PyDict>> {
-    let Polygonized { mesh, report, lattice, engine, primitive_evaluations, compile_time, .. } = made;
+/// The arrays of a mesh, given away.
+pub(crate) fn mesh_dict(py: Python<'_>, mesh: Mesh) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("origin", mesh.origin)?;
     dict.set_item("up", mesh.orientation.up.name())?;
@@ -94,6 +93,13 @@ fn told(py: Python<'_>, made: Polygonized) -> PyResult<Bound<'_, PyDict>> {
         attributes.set_item(name, matrix(py, width, values)?)?;
     }
     dict.set_item("attributes", attributes)?;
+    Ok(dict)
+}
+
+/// A mesh and what it took.
+fn told(py: Python<'_>, made: Polygonized) -> PyResult<Bound<'_, PyDict>> {
+    let Polygonized { mesh, report, lattice, engine, primitive_evaluations, compile_time, .. } = made;
+    let dict = mesh_dict(py, mesh)?;
     dict.set_item("closed", report.closed)?;
     dict.set_item("cut_sides", report.cut_sides.to_string())?;
     dict.set_item("crowded", report.crowded)?;

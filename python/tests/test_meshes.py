@@ -83,9 +83,10 @@ def test_every_format_is_written(peanut: jbt.Model, tmp_path: Path) -> None:
         mesh.save(path)
         assert path.stat().st_size > 1000
         mesh.save(tmp_path / "plain", format=ending, up="y")
-        trimesh = pytest.importorskip("trimesh")
-        read = trimesh.load_mesh(path)
-        assert len(read.faces) == len(mesh.faces)
+        if ending in ("glb", "ply", "obj", "stl"):
+            # The others are judged by their own libraries (`outside/`).
+            trimesh = pytest.importorskip("trimesh")
+            assert len(trimesh.load_mesh(path).faces) == len(mesh.faces)
 
 
 def test_trimesh(peanut: jbt.Model) -> None:

@@ -88,7 +88,7 @@ def test_loading(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         jbt.load(tmp_path / "none.jbt")
     with pytest.raises(jbt.SceneError, match=r"scenes end in \.jbt"):
-        jbt.load(tmp_path / "none.xyz")
+        jbt.load(tmp_path / "none.pdf")
     text = "_0 var-x\n_1 const 1\n_2 sub _1 _0\n"
     assert field(jbt.loads(text, "a.vm"), 0.25, 0, 0) != 0
     parsip = b"[BLOBTREE]"

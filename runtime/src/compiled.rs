@@ -10,12 +10,12 @@
 //! the same code on the same numbers, and each says what its own rays took.
 
 mod patch;
+mod task;
 
 use std::sync::{Arc, OnceLock};
 
-use crate::parallel::*;
-
-use jbt_lower::{Lowered, Lowering};
+use jbt_ir::watch;
+use jbt_lower::{Lowered, Lowering, Workers as _};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::origin::ModelOrigin;
@@ -25,11 +25,13 @@ use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
 use crate::kernel::{Engine, Kernel, Purpose};
+use crate::parallel::PoolWorkers;
 use crate::program::{AnswerProgram, ModelProgram};
 use crate::prune::program::RangeProgram;
 use crate::span::span;
 
 use patch::PresentPrograms;
+pub use task::Task;
 
 /// A compiled model: programs for whatever is asked of it.
 ///
@@ -205,6 +207,14 @@ impl Compiled {
         &self.0.tree
     }
 
+    /// Puts programs here that were made in another way, where none has been asked for.
+    pub(crate) fn fill(&self, ranges: RangeProgram, answers: Vec<AnswerProgram>) {
+        self.0.ranges.give(Arc::new(ranges));
+        for program in answers {
+            self.0.in_regions[program.query.index()].give(Arc::new(program));
+        }
+    }
+
     /// What compiles it.
     #[must_use]
     pub fn compiler(&self) -> &Compiler {
@@ -223,13 +233,15 @@ impl Compiled {
     /// # Errors
     /// Those of the first program of the list that cannot be had.
     pub(crate) fn prepare(&self, needs: &[Need]) -> Result<(), CompileError> {
-        let missing: Vec<Need> = needs.iter().copied().filter(|need| !self.is_made(*need)).collect();
-        if !missing.is_empty() {
-            let lowering = Lowering::with(self.tree(), &PoolWorkers);
-            // What went wrong is kept, and told below.
-            missing.par_iter().for_each(|need| drop(self.make(*need, Some(&lowering))));
-        }
-        needs.iter().try_for_each(|need| self.make(*need, None))
+        watch::stoppable(|| {
+            let missing: Vec<Need> = needs.iter().copied().filter(|need| !self.is_made(*need)).collect();
+            if !missing.is_empty() {
+                let lowering = Lowering::with(self.tree(), &PoolWorkers);
+                // What went wrong is kept, and told below.
+                PoolWorkers.each(missing.len(), &|index| drop(self.make(missing[index], Some(&lowering))));
+            }
+            needs.iter().try_for_each(|need| self.make(*need, None))
+        })?
     }
 
     /// The program that answers a query.
@@ -238,19 +250,19 @@ impl Compiled {
         scope: PointScope,
         query: Query,
     ) -> Result<&Arc<AnswerProgram>, CompileError> {
-        self.answers_of(scope, query, None)
+        watch::stoppable(|| self.answers_of(scope, query, None))?
     }
 
     /// The program of ranges, and what is known about rows.
     pub(crate) fn ranges(&self) -> Result<&Arc<RangeProgram>, CompileError> {
-        self.ranges_of(None)
+        watch::stoppable(|| self.ranges_of(None))?
     }
 
     /// The program for regions that belongs to one of straight code, which cannot leave rows out. If the
     /// wished engine declines it, the interpreter runs it.
     pub(crate) fn regional_twin<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
         straight.for_regions.get_or_init(|| {
-            let wished = self.answers(PointScope::Regions, straight.query).cloned();
+            let wished = self.answers_of(PointScope::Regions, straight.query, None).cloned();
             wished.unwrap_or_else(|_| {
                 // A program that is small as straight code is within all limits.
                 let lanes = self.0.compiler.clone().on_engine(Engine::Lanes);

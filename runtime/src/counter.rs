@@ -39,6 +39,23 @@ pub struct Counters {
     pub evaluations_avoided: u64,
 }
 
+impl Counters {
+    /// Counts the work of another evaluator as well.
+    pub(crate) fn add(&mut self, other: &Self) {
+        let sums = [
+            (&mut self.calls, other.calls),
+            (&mut self.points, other.points),
+            (&mut self.lanes, other.lanes),
+            (&mut self.primitive_evaluations, other.primitive_evaluations),
+            (&mut self.evaluations_pruned, other.evaluations_pruned),
+            (&mut self.evaluations_avoided, other.evaluations_avoided),
+        ];
+        for (sum, more) in sums {
+            *sum += more;
+        }
+    }
+}
+
 /// The counters of an evaluator, shared by threads.
 #[derive(Debug, Default)]
 pub(crate) struct SharedCounters {

@@ -4,6 +4,7 @@ use std::error::Error;
 
 use jbt_ir::VerifyError;
 use jbt_ir::engine::RunError;
+use jbt_ir::watch::Stopped;
 use jbt_model::diagnostic::{Diagnostics, Severity};
 
 /// What has to change so that an error goes away. Programs map it to what their users know: an exit code, an
@@ -78,6 +79,9 @@ pub enum CompileError {
         /// Why.
         reason: String,
     },
+    /// A token of the caller's stopped it. Whoever asks again begins anew.
+    #[error("compiling was cancelled")]
+    Cancelled,
     /// The compiler made a program that breaks its own rules: a defect of jbt.
     #[error("the compiler broke its own rules: {}", .0.first().map_or(String::new(), ToString::to_string))]
     Internal(Vec<VerifyError>),
@@ -88,12 +92,19 @@ impl Classified for CompileError {
         match self {
             Self::Model(diagnostics) => diagnostics.kind(),
             Self::Engine { .. } => ErrorKind::Limit,
+            Self::Cancelled => ErrorKind::Cancelled,
             Self::Internal(_) => ErrorKind::Internal,
         }
     }
 
     fn diagnostics(&self) -> Option<&Diagnostics> {
         if let Self::Model(diagnostics) = self { Some(diagnostics) } else { None }
+    }
+}
+
+impl From<Stopped> for CompileError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
     }
 }
 

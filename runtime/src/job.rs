@@ -4,6 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use jbt_ir::watch;
+
 /// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
 pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
 
@@ -74,10 +76,13 @@ impl<'a, T, E> Job<'a, T, E> {
     /// Those of the work, and its `Cancelled`.
     pub fn run(self) -> Result<T, E> {
         let Self { work, mut watchers, tokens } = self;
-        work(&mut move |part| {
+        let goes_on = move || !tokens.iter().any(CancelToken::is_cancelled);
+        let asked = goes_on.clone();
+        let mut hook = move |part| {
             watchers.iter_mut().for_each(|watch| watch(part));
-            !tokens.iter().any(CancelToken::is_cancelled)
-        })
+            asked()
+        };
+        watch::offer(Arc::new(goes_on), || work(&mut hook))
     }
 }
 
@@ -101,6 +106,13 @@ impl CancelToken {
     /// Tells all work that has it to stop soon.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Release);
+    }
+
+    /// Does work that is no job: whatever it compiles stops within some hundredths of a second, with
+    /// [`CompileError::Cancelled`](crate::CompileError::Cancelled), once the token is cancelled.
+    pub fn watches<T>(&self, work: impl FnOnce() -> T) -> T {
+        let token = self.clone();
+        watch::offer(Arc::new(move || !token.is_cancelled()), work)
     }
 
     /// Whether it has been cancelled.

@@ -45,6 +45,7 @@
 //! * A [`Pruner`] makes a [`Region`] of a box: the rows that matter there. [`Evaluator::eval_region`] runs
 //!   these alone, with the same bits; [`divide`], [`sample`] and meshes do so by themselves.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
+//! * [`remote`] makes parts of models for other processes, and [`Polygonize::block`] parts of meshes.
 //! * A [`LiveMesh`] follows the edits of its model: what has changed is made anew, in buffers for a GPU.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
@@ -62,7 +63,7 @@
 //! | `jit` (default) | machine code; without it the SIMD interpreter runs, with the same bits |
 //! | `parallel` (default) | long work on the threads of the rayon pool in which it is called; without it on one |
 //! | `levels` (default) | loops of the mesher in AVX2 where the CPU has it, with the same bits |
-//! | `export` (default) | files: meshes, contours, pictures, atomic replacement |
+//! | `export` (default) | files: meshes, contours, pictures, atomic replacement, files that scenes name |
 //! | `listing` | machine code as text |
 //! | `trace` | stages of long work as spans of the crate `tracing`, for timelines |
 //! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
@@ -116,6 +117,7 @@
 
 pub mod boxes;
 mod buffer;
+mod bytes;
 mod compiled;
 mod compiler;
 pub mod contour;
@@ -128,6 +130,8 @@ mod evaluator;
 pub mod export;
 mod finite_gradient;
 mod finite_points;
+#[cfg(feature = "export")]
+mod folder;
 pub mod internals;
 mod job;
 mod kernel;
@@ -142,6 +146,7 @@ mod probe;
 mod program;
 mod progress;
 pub mod prune;
+pub mod remote;
 pub mod render;
 pub mod sample;
 mod scene;
@@ -181,11 +186,13 @@ pub use jbt_text::import;
 
 pub use boxes::{Box3, Range};
 pub use buffer::{Layout, Samples};
-pub use compiled::Compiled;
+pub use compiled::{Compiled, Task};
 pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
 pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
+#[cfg(feature = "export")]
+pub use folder::SceneFolder;
 pub use jbt_text::import::SceneFormat;
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;

@@ -3,6 +3,7 @@
 //! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
 //! meaning: they are the case of one thread.
 
+use jbt_ir::watch;
 use jbt_lower::Workers;
 
 #[cfg(feature = "parallel")]
@@ -16,7 +17,11 @@ pub(crate) struct PoolWorkers;
 
 impl Workers for PoolWorkers {
     fn each(&self, count: usize, task: &(dyn Fn(usize) + Sync)) {
-        (0..count).into_par_iter().for_each(task);
+        // A thread that waits may do work of somebody else.
+        let watch = watch::active();
+        watch::under(None, || {
+            (0..count).into_par_iter().for_each(|index| watch::under(watch.clone(), || task(index)));
+        });
     }
 }
 

@@ -7,6 +7,7 @@
 //!             └─► full kernel ─────► every vertex, once: normal and attributes
 //! ```
 
+mod blocks;
 mod kernels;
 
 use jbt_model::diagnostic::Diagnostics;
@@ -130,6 +131,24 @@ impl MeshCounters {
         [self.lattice, self.pulls, self.vertices].iter().map(|stage| stage.primitive_evaluations).sum()
     }
 
+    fn add(&mut self, other: &Self) {
+        self.division.boxes += other.division.boxes;
+        self.division.interval_evaluations += other.division.interval_evaluations;
+        self.lattice.add(&other.lattice);
+        self.pulls.add(&other.pulls);
+        self.vertices.add(&other.vertices);
+        let sums = [
+            (&mut self.dense_evaluations, other.dense_evaluations),
+            (&mut self.avoided_by_interval, other.avoided_by_interval),
+            (&mut self.avoided_by_support, other.avoided_by_support),
+            (&mut self.thin, other.thin),
+            (&mut self.thin_intervals, other.thin_intervals),
+        ];
+        for (sum, more) in sums {
+            *sum += more;
+        }
+    }
+
     fn new(kernels: &Kernels, report: &MeshReport, lattice: &Lattice) -> Self {
         let [field, pulls, vertices] = kernels.counters();
         let points = lattice.points().iter().fold(1_u64, |all, &points| all.saturating_mul(points as u64));
@@ -149,6 +168,25 @@ impl MeshCounters {
             thin: 0,
             thin_intervals: 0,
         }
+    }
+}
+
+impl Polygonized {
+    /// The mesh as the first part of one.
+    fn as_part(mut self, name: &str) -> Self {
+        let made = std::mem::take(&mut self.mesh);
+        self.mesh = Mesh { origin: made.origin, orientation: made.orientation, ..Mesh::default() };
+        self.mesh.add_part(name, made, &self.lattice);
+        self
+    }
+
+    /// Adds another part.
+    fn add_part(&mut self, name: &str, other: Self) {
+        self.mesh.add_part(name, other.mesh, &self.lattice);
+        self.report.add(other.report);
+        self.counters.add(&other.counters);
+        self.primitive_evaluations += other.primitive_evaluations;
+        self.compile_time += other.compile_time;
     }
 }
 
@@ -232,16 +270,17 @@ impl Polygonize {
         tree: &'a CheckedTree,
     ) -> Job<'a, Polygonized, PolygonizeError> {
         let settings = *self;
-        Job::new(move |hook| settings.mesh_hooked(&compiler.compile(tree), hook))
+        Job::new(move |hook| settings.mesh_parts(&compiler.compile(tree), hook))
     }
 
-    /// The mesh of a compiled model.
+    /// The mesh of a compiled model. Parts are meshed by themselves, over one lattice, and are
+    /// [parts](Mesh::parts) of the mesh.
     ///
     /// # Errors
     /// See [`PolygonizeError`].
     pub fn with<'a>(&self, compiled: &'a Compiled) -> Job<'a, Polygonized, PolygonizeError> {
         let settings = *self;
-        Job::new(move |hook| settings.mesh_hooked(compiled, hook))
+        Job::new(move |hook| settings.mesh_parts(compiled, hook))
     }
 
     /// The mesh of a compiled model over a lattice, in coordinates about the model's
@@ -268,8 +307,25 @@ impl Polygonize {
         }
     }
 
-    fn mesh_hooked(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
-        self.mesh_over(compiled, self.lattice(compiled.tree())?, hook)
+    /// The mesh of all parts over one lattice; that of the whole, if there are none.
+    fn mesh_parts(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
+        let tree = compiled.tree();
+        let lattice = self.lattice(tree)?;
+        let parts = tree.parts();
+        let mut all: Option<Polygonized> = None;
+        for (index, part) in parts.iter().enumerate() {
+            let mut share = |at: f32| hook((index as f32 + at) / parts.len() as f32);
+            let part_tree = compiled.compiler().compile(&tree.part(index));
+            let made = self.mesh_over(&part_tree, lattice.clone(), &mut share)?;
+            match &mut all {
+                Some(all) => all.add_part(part.name, made),
+                None => all = Some(made.as_part(part.name)),
+            }
+        }
+        match all {
+            Some(all) => Ok(all),
+            None => self.mesh_over(compiled, lattice, hook),
+        }
     }
 
     fn mesh_over(
@@ -279,6 +335,9 @@ impl Polygonize {
         hook: Hook<'_>,
     ) -> Result<Polygonized, PolygonizeError> {
         let tree = compiled.tree();
+        if !hook(0.0) {
+            return Err(MeshError::Cancelled.into());
+        }
         let start = Instant::now();
         let kernels = Kernels::new(compiled)?;
         let compile_time = start.elapsed();

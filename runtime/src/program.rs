@@ -29,13 +29,18 @@ pub(crate) struct AnswerProgram {
 impl AnswerProgram {
     /// The program of a model that answers a query.
     pub(crate) fn new(tree: &CheckedTree, query: Query, bound: BoundKernel) -> Self {
+        Self::with_uses(tree, query, bound, tree.leaf_uses())
+    }
+
+    /// The same of a model with so many paths from its root to leaves. Of the tree, attributes alone count.
+    pub(crate) fn with_uses(tree: &CheckedTree, query: Query, bound: BoundKernel, uses: u64) -> Self {
         let layout = Layout::new(query, tree.attributes());
         debug_assert_eq!(
             layout.names(),
             bound.kernel.function.function().outputs,
             "planes are named alike everywhere"
         );
-        let separate = walks(query).saturating_mul(tree.leaf_uses());
+        let separate = walks(query).saturating_mul(uses);
         Self { query, bound, layout, separate, for_regions: OnceLock::new() }
     }
 

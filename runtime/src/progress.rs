@@ -1,6 +1,9 @@
 //! How far work is, told by all of its threads to one hook that may cancel it.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use crate::job::Hook;
 
@@ -14,6 +17,38 @@ pub(crate) struct Progress<'h> {
     state: Mutex<ProgressState<'h>>,
     /// The part of the work between two calls of the hook.
     step: f64,
+    pulse: Pulse,
+}
+
+/// Tells when it is time to ask again, to threads that work.
+pub(crate) struct Pulse {
+    begun: Instant,
+    /// Milliseconds from the beginning to the last question.
+    asked: AtomicU64,
+}
+
+/// Milliseconds between two questions, if the work gives the opportunity: less than a third of what people
+/// take for at once.
+const PULSE: u64 = 15;
+/// Work between two such opportunities, where it can be divided at will.
+const PACE: Duration = Duration::from_millis(8);
+/// The least that is worth a division: points of some blocks of every engine.
+const LEAST_POINTS: usize = 256;
+
+impl Pulse {
+    pub(crate) fn new() -> Self {
+        Self { begun: Instant::now(), asked: AtomicU64::new(0) }
+    }
+
+    /// Whether it is time to ask. The caller does so.
+    pub(crate) fn is_due(&self) -> bool {
+        let now = self.begun.elapsed().as_millis() as u64;
+        let is_due = now.saturating_sub(self.asked.load(Ordering::Relaxed)) >= PULSE;
+        if is_due {
+            self.asked.store(now, Ordering::Relaxed);
+        }
+        is_due
+    }
 }
 
 /// For pieces that take long: each is told.
@@ -50,7 +85,7 @@ impl<'h> Progress<'h> {
     pub(crate) fn new(hook: Hook<'h>, step: f64) -> Self {
         let mut state = ProgressState { hook, span: [0.0, 1.0], done: 0.0, told: 0.0, cancelled: false };
         state.tell();
-        Self { state: Mutex::new(state), step }
+        Self { state: Mutex::new(state), step, pulse: Pulse::new() }
     }
 
     /// Begins a stage that makes this part of the whole work.
@@ -63,12 +98,39 @@ impl<'h> Progress<'h> {
 
     /// A share of the stage is done, in (0, 1].
     pub(crate) fn add(&self, share: f64) -> Result<(), Cancelled> {
+        let is_due = self.pulse.is_due();
         self.with(|state| {
             state.done += share;
-            if state.part() >= state.told + self.step {
+            if is_due || state.part() >= state.told + self.step {
                 state.tell();
             }
         })
+    }
+
+    /// Asks the hook whether to go on, if nobody has done so for a while: between parts of a share.
+    pub(crate) fn breathe(&self) -> Result<(), Cancelled> {
+        if self.pulse.is_due() { self.ask() } else { Ok(()) }
+    }
+
+    /// Works on all points of a range, as many at once as take little time; `points` is how many that are, as
+    /// the last call on this thread has found.
+    pub(crate) fn paced<E: From<Cancelled>>(
+        &self,
+        count: usize,
+        points: &mut usize,
+        mut work: impl FnMut(Range<usize>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut start = 0;
+        while start < count {
+            let end = count.min(start.saturating_add((*points).max(LEAST_POINTS)));
+            let begun = Instant::now();
+            work(start..end)?;
+            let took = begun.elapsed().as_secs_f64().max(1e-9);
+            *points = ((end - start) as f64 * PACE.as_secs_f64() / took) as usize;
+            start = end;
+            self.breathe()?;
+        }
+        Ok(())
     }
 
     /// Asks the hook whether to go on, where nobody knows how much is done.
@@ -76,9 +138,14 @@ impl<'h> Progress<'h> {
         self.with(ProgressState::tell)
     }
 
-    /// Whether nobody has said to stop so far; the hook is not asked.
+    /// Whether nobody has said to stop so far; the hook is asked if nobody has done so for a while.
     pub(crate) fn check(&self) -> Result<(), Cancelled> {
-        self.with(|_| ())
+        let is_due = self.pulse.is_due();
+        self.with(|state| {
+            if is_due {
+                state.tell();
+            }
+        })
     }
 
     /// All is done.

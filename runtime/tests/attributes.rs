@@ -222,8 +222,8 @@ fn steps_weigh_two_sides_at_a_time() {
     }
 }
 
-/// A formula may have a field where nothing that it is made of has: there the default is all of its answer, and
-/// dominates with all of its field.
+/// A formula may have a field where nothing that it is made of has: there the default is all of its answer,
+/// and dominates with all of its field.
 #[test]
 fn a_default_dominates_with_all_of_its_field() {
     let far = "union { point { at (9 0 0) radius 1 } point { at (9 1 0) radius 1 } }";

@@ -8,8 +8,8 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jbt::build::point;
-use jbt::{Compiler, Evaluator, Fineness, Model, Points, Polygonize, Query, Scene, Tree};
+use jbt::build::particles as particles_of;
+use jbt::{Compiler, Evaluator, Fineness, Model, Points, Polygonize, Query, Scene};
 
 /// How far the points of `evaluation.py` go on along each axis, as parts of the whole.
 const STEPS: [f64; 3] = [0.819_172_513_4, 0.671_043_606_7, 0.549_700_477_9];
@@ -49,8 +49,7 @@ fn particles(file: &str, radius: f64, cells: usize) -> Result<f64, Box<dyn Error
     let bytes = std::fs::read(file)?;
     let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let start = Instant::now();
-    let sum: Tree = numbers.as_chunks::<3>().0.iter().map(|&place| point(place, radius)).sum();
-    let tree = Model::new(sum).check()?;
+    let tree = Model::new(particles_of(numbers, radius)).check()?;
     let settings = Polygonize { fineness: Fineness::Resolution(cells), ..Polygonize::default() };
     let made = settings.mesh(&Compiler::new(), &tree).run()?;
     let seconds = start.elapsed().as_secs_f64();

@@ -75,6 +75,11 @@ impl Case {
             what: "unions of 1,024 spheres and a sponge to meshes, 129^3 lattice",
             run: unions::unions,
         },
+        Self {
+            name: "small-box",
+            what: "the rows of a union that matter in one small box, by number of spheres",
+            run: unions::small_boxes,
+        },
         Self { name: "particles", what: "a ball of particles to a mesh", run: mesh::particles },
         Self {
             name: "train",

@@ -207,3 +207,39 @@ pub(super) fn unions(options: Options) -> Vec<ResultRow> {
         row("spheres", &read(&chain), &chain, options),
     ]
 }
+
+/// Questions before the measurement: after some a pruner makes trees, whose cost many questions share.
+const FIRST_QUESTIONS: usize = 100;
+
+/// One small box of a union of that many spheres, each of which reaches all boxes.
+fn small_box(count: usize, options: Options) -> ResultRow {
+    let mut rng = Rng::with_seed(1);
+    let sphere = |_| jbt::build::point([(); 3].map(|()| 2.0 * rng.f64() - 1.0), 4.0);
+    let union = jbt::Tree::union((0..count).map(sphere));
+    let tree = jbt::Model::new(union).check().expect("the model is good");
+    let pruner = Compiler::new().compile(&tree).pruner().expect("the model compiles");
+    // As large as the mean distance of spheres is.
+    let side = (8.0 / count as f64).cbrt() as f32;
+    let mut rng = Rng::with_seed(2);
+    let mut rows = move || {
+        let low = [(); 3].map(|()| (2.0 - side) * rng.f32() - 1.0);
+        pruner.region(Box3::new(low, low.map(|low| low + side))).expect("a proper box").rows()
+    };
+    let sum: usize = (0..FIRST_QUESTIONS).map(|_| rows()).sum();
+    let mut contest = Contest::new();
+    contest.enter(Contestant::Ours, "", Ok(()), rows);
+    ResultRow {
+        case: "small-box",
+        primitives: count,
+        points: 0,
+        unit: "box",
+        units: 1.0,
+        standings: contest.run(options.effort()),
+        extra: vec![("rows_in_a_box", json!(sum as f64 / FIRST_QUESTIONS as f64))],
+    }
+}
+
+/// By number of spheres.
+pub(super) fn small_boxes(options: Options) -> Vec<ResultRow> {
+    [1_000, 10_000, 100_000, 1_000_000].into_iter().map(|count| small_box(count, options)).collect()
+}

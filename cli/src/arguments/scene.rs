@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jbt::import::particles::{ParticleForm, ParticleOptions};
+use jbt::text::files::Files;
 use jbt::{SceneFormat, text};
 
 /// The scene, and what its text leaves open.
@@ -27,8 +28,22 @@ pub struct SceneOptions {
     /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored
     #[arg(long)]
     pub mirror: bool,
+    /// Parts of it.
+    #[command(flatten)]
+    pub parts: PartArguments,
     #[command(flatten)]
     pub particles: ParticleArguments,
+}
+
+/// Which parts of a scene count.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PartArguments {
+    /// Only the parts of this name, where they are; a path as body/arm.1/hand tells parts of one name apart
+    #[arg(long, value_name = "PATH")]
+    pub only: Option<String>,
+    /// Not the parts of this name or path; may be given several times
+    #[arg(long, value_name = "PATH")]
+    pub without: Vec<String>,
 }
 
 /// What a file of particles or atoms leaves open.
@@ -61,20 +76,21 @@ pub struct ParticleArguments {
 }
 
 impl SceneOptions {
-    /// As the library takes them.
-    pub fn to_library(&self) -> text::Options {
+    /// As the library takes them, with a way to open the files that a scene names.
+    pub fn to_library(&self, files: Files) -> text::Options {
         let ParticleArguments { radius, scale, form, columns, values, waters, frame } =
             self.particles.clone();
         let frame = frame.map(|frame| frame as usize);
         text::Options {
             parameters: self.definitions.clone(),
             object: self.object.clone(),
+            files,
             particles: ParticleOptions { radius, scale, form, columns, values, waters, frame },
         }
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a number above 0".to_owned()) }
 }

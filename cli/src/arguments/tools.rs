@@ -6,6 +6,8 @@ use clap::Args;
 use clap_complete::Shell;
 use jbt::{Query, SceneFormat};
 
+use super::scene::positive;
+use super::wanted::{Wanted, WantedParser};
 use super::words::queries;
 use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
 use crate::formats::TextKind;
@@ -27,9 +29,9 @@ pub struct ShowArguments {
     /// The stage to print
     #[arg(long, value_name = "STAGE")]
     pub stage: String,
-    /// The answers that the program gives
-    #[arg(long, default_value_t = Query::ALL, value_parser = queries())]
-    pub query: Query,
+    /// The answers that the program gives, and names of attribute groups if not all are wanted
+    #[arg(long, default_value_t = Query::ALL.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Show the straight code of formulas that have much in common: what points anywhere run, while regions
     /// run rows
     #[arg(long)]
@@ -160,6 +162,12 @@ pub struct CheckArguments {
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub options: SceneOptions,
+    /// Compare the parts of each scene: volumes, and which of them overlap, touch or are apart
+    #[arg(long)]
+    pub overlaps: bool,
+    /// How near to each other points of two parts touch; a 1024th of the longest side without it
+    #[arg(long, value_name = "T", requires = "overlaps", value_parser = positive)]
+    pub tolerance: Option<f64>,
     /// Print one JSON object instead of messages and summaries
     #[arg(long)]
     pub json: bool,
@@ -170,14 +178,45 @@ All files are checked. The exit code is that of the first one with which somethi
 
 Keys of --json:
   files: [{file, ok, model: {nodes, leaves, instances, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
-  (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
+  (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing}],
+  overlaps: {parts: [{name, volume: {low, high, estimate}}], pairs: [{parts: [NAME, NAME], relation (apart, touching,
+  overlapping), at: [x, y, z], volume, within, more_than}]} (with --overlaps)}}] (model is null where something is wrong),
   diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
   is one past the last character, columns count characters from 1, and what is not there is null
 
 Examples:
   jbt check hero.jbt
   jbt check examples/*.jbt -q
+  jbt check machine.jbt --overlaps
   jbt check hero.jbt --json | jq '.diagnostics[].message'";
+
+/// What `jbt diff` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Nodes are compared by what they mean: names, comments and sharing do not count. Children meet by equal content first,
+then by name, then by kind. Where fields differ is found on 48 points along each axis over both supports.
+
+Keys of --json:
+  same, hashes: [A, B] (stable over runs and versions), differences: [{path, first, second}] (path is empty for statements,
+  first or second null for what is in the other alone), field: {box: [x0, y0, z0, x1, y1, z1], at: [x, y, z], most}
+  (null if fields agree or reach to infinity)
+
+Examples:
+  jbt diff old.jbt new.jbt
+  jbt diff robot.jbt robot.jbt --json")]
+pub struct DiffArguments {
+    /// One scene
+    #[arg(value_name = "SCENE")]
+    pub first: PathBuf,
+    /// Another one
+    #[arg(value_name = "OTHER")]
+    pub second: PathBuf,
+    #[command(flatten)]
+    pub options: SceneOptions,
+    /// Print one JSON object instead of words
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// What `jbt completions` takes.
 #[derive(Args, Debug)]

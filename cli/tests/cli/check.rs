@@ -43,6 +43,7 @@ fn check_reports_for_machines() {
             "end": { "line": 4, "column": 18 },
             "message": "`point` has no parameter `radus`",
             "hint": "perhaps `radius`",
+            "notes": [],
         })
     );
     assert_eq!((&diagnostics[1]["line"], &diagnostics[1]["column"]), (&json!(5), &json!(5)));
@@ -66,4 +67,50 @@ fn check_reports_for_machines() {
     assert!(severities.eq(["warning"]), "{report}");
     let stdin = odd.jbt_with_input(&["check", "--json", "-"], b"jbt 1 point { radius 0 }").code(1).json();
     assert_eq!(stdin["diagnostics"][0]["file"], "<stdin>");
+}
+
+#[test]
+fn overlaps_are_told() {
+    let ball =
+        |name: &str, x: f64| format!("part \"{name}\" {{ point {{ at ({x} 0 0) surface_radius 1 }} }}\n");
+    let text = format!("jbt 1\n{}{}{}", ball("hub", 0.0), ball("pin", 1.5), ball("far", 6.0));
+    let folder = Folder::new().with("parts.jbt", &text).with("scene.jbt", SCENE);
+    let told = folder.jbt(&["check", "--overlaps", "parts.jbt"]).code(0).stdout();
+    assert!(told.contains("overlap      hub and pin near ("), "{told}");
+    assert!(
+        told.contains("apart        2 of 3 pairs") && told.contains("part         far: volume 4."),
+        "{told}"
+    );
+    let report = folder.jbt(&["check", "--overlaps", "--json", "parts.jbt"]).code(0).json();
+    let pairs = &report["files"][0]["model"]["overlaps"]["pairs"];
+    assert_eq!((&pairs[0]["relation"], &pairs[1]["relation"]), (&json!("overlapping"), &json!("apart")));
+    // Two caps of height 0.25.
+    let exact = 2.0 * std::f64::consts::PI * 0.0625 * (3.0 - 0.25) / 3.0;
+    let volume = |key: &str| pairs[0]["volume"][key].as_f64().unwrap();
+    assert!(volume("low") <= exact && exact <= volume("high"), "{pairs}");
+    let told = folder.jbt(&["check", "--overlaps", "scene.jbt"]).code(0).stdout();
+    assert!(told.contains("the scene is one solid"), "{told}");
+    folder.jbt(&["check", "--tolerance", "0.1", "scene.jbt"]).code(2);
+}
+
+#[test]
+fn two_scenes_are_compared() {
+    let scene = |radius: &str| {
+        format!("jbt 1 union {{ hub: point {{ radius {radius} }} ring {{ ring_radius 2 radius 0.5 }} }}")
+    };
+    let folder = Folder::new()
+        .with("a.jbt", &scene("1"))
+        .with("b.jbt", &scene("1.5"))
+        .with("c.jbt", &format!("# the same\n{}", scene("1.0")));
+    let told = folder.jbt(&["diff", "a.jbt", "b.jbt"]).code(0).stdout();
+    assert!(told.starts_with("a.jbt and b.jbt: 1 difference\n  at union.0/hub\n"), "{told}");
+    assert!(
+        told.contains("- point { radius 1 }\n  + point { radius 1.5 }\n  fields differ from ("),
+        "{told}"
+    );
+    let told = folder.jbt(&["diff", "a.jbt", "c.jbt"]).code(0).stdout();
+    assert!(told.starts_with("a.jbt and c.jbt are the same model, 1-"), "{told}");
+    let report = folder.jbt(&["diff", "a.jbt", "b.jbt", "--json"]).code(0).json();
+    assert_eq!((&report["same"], &report["differences"][0]["path"]), (&json!(false), &json!("union.0/hub")));
+    folder.jbt(&["diff", "a.jbt", "none.jbt"]).code(4);
 }

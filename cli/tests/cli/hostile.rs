@@ -228,3 +228,18 @@ fn models_without_a_mesh_say_why() {
     folder.jbt(&["mesh", "apart.jbt", "-o", "a.glb"]).code(1).says("the model is empty");
     folder.jbt(&["check", "apart.jbt"]).code(0);
 }
+
+/// A budget of work is counted before anything is spent of it: pieces of a curve, times its uses.
+#[test]
+fn pieces_times_uses_are_refused_at_once() {
+    let succulent = include_str!("../../../examples/succulent.jbt");
+    assert!(succulent.contains("(0.12 0.24 0.42 0.015)"));
+    let huge = succulent.replace("(0.12 0.24 0.42 0.015)", "(0.12 4294967296 0.42 0.015)");
+    let folder = folder().with("huge.jbt", huge);
+    for command in [vec!["check", "huge.jbt"], vec!["mesh", "huge.jbt", "--resolution", "32", "-o", "out.stl"]] {
+        let start = std::time::Instant::now();
+        folder.jbt(&command).code(3).says("huge.jbt:10:9: limit: unfolded, a point of the model would take");
+        assert!(start.elapsed().as_secs() < 20, "{command:?} took {:?}", start.elapsed());
+    }
+    assert!(!folder.path("out.stl").exists());
+}

@@ -176,3 +176,41 @@ fn numbers_of_regions_that_are_none_are_named() {
     contour("0,0,inf,1").says("U1 is `inf`, and a region has finite corners");
     contour("0,2,1,1").says("V1 must be greater than V0, and the region goes from 2 to 1");
 }
+
+/// A file that may be written to in a folder that takes no new file: its contents are replaced all the same.
+#[cfg(unix)]
+#[test]
+fn in_a_closed_folder_a_file_is_written_in_place() {
+    use std::os::unix::fs::PermissionsExt as _;
+    use std::os::unix::process::CommandExt as _;
+    use std::process::Command;
+
+    let folder = folder();
+    fs::create_dir(folder.path("closed")).unwrap();
+    let (jbt, file) = (folder.path("jbt"), folder.path("closed/mesh.stl"));
+    fs::copy(env!("CARGO_BIN_EXE_jbt"), &jbt).unwrap();
+    fs::write(&file, vec![b'x'; 1 << 20]).unwrap();
+    let rights = |name: &str, mode| fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode));
+    rights(".", 0o755).unwrap();
+    rights("closed/mesh.stl", 0o666).unwrap();
+    rights("closed", 0o555).unwrap();
+    let mesh = |output: &str| {
+        let mut command = Command::new(&jbt);
+        command.args(["mesh", "scene.jbt", "--resolution", "8", "-o", output]).current_dir(folder.path("."));
+        // To the superuser all folders are open.
+        if fs::metadata("/proc/self").is_ok_and(|own| std::os::unix::fs::MetadataExt::uid(&own) == 0) {
+            command.uid(65534).gid(65534);
+        }
+        command.output().expect("it runs")
+    };
+    let made = mesh("closed/mesh.stl");
+    let told = String::from_utf8_lossy(&made.stderr);
+    assert!(made.status.success(), "{told}");
+    assert!(told.contains("takes no new file: closed/mesh.stl is written in place"), "{told}");
+    let triangles = u32::from_le_bytes(fs::read(&file).unwrap()[80..84].try_into().unwrap()) as usize;
+    assert_eq!(fs::metadata(&file).unwrap().len() as usize, 84 + 50 * triangles);
+    let refused = mesh("closed/other.stl");
+    assert_eq!(refused.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("closed takes no new file"));
+    rights("closed", 0o755).unwrap();
+}

@@ -196,6 +196,7 @@ impl<'a> Emitter<'a> {
     fn run(mut self) -> Result<Code, Vec<Diagnostic>> {
         self.start();
         while let Some(task) = self.tasks.pop() {
+            jbt_ir::watch::look();
             self.work(task);
             self.check_limits()?;
         }
@@ -265,7 +266,7 @@ impl<'a> Emitter<'a> {
             },
             Task::Keep(id) => {
                 let answer = self.answers.pop().expect("it has just been defined");
-                self.kept.insert(id, answer);
+                self.kept.insert(id, Answer { contest: None, ..answer });
             }
             Task::Hoist(place) => self.hoist(place),
             Task::LeaveSpace => {
@@ -326,7 +327,7 @@ impl<'a> Emitter<'a> {
             answer.field = self.closed(reduce.operator.code, answer.field);
         }
         let contest = reduce.operator.contest(reduce.groups, &self.builder);
-        self.end_operator(answer.field, contest);
+        answer.contest = self.end_operator(answer.field, contest);
         self.answers.push(answer);
     }
 
@@ -352,7 +353,7 @@ impl<'a> Emitter<'a> {
         let left = self.answers.pop().expect("the left side has been defined");
         let iso2 = self.iso2.expect("the scene's row is open");
         let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
-        self.end_operator(answer.field, None);
+        self.end_difference(answer.field, [&left, &right]);
         self.answers.push(answer);
     }
 
@@ -362,7 +363,7 @@ impl<'a> Emitter<'a> {
             InstanceKind::Leaf { field, .. } => {
                 let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(place));
                 let groups = self.leaf_attributes(place);
-                self.answers.push(Answer { field: value, groups });
+                self.answers.push(Answer::new(value, groups));
             }
             InstanceKind::Warp { inside, .. } => {
                 // The other one is its weight, which is hoisted.

@@ -22,9 +22,9 @@ use jbt_ir::{Domain, FunctionBuilder, InstKind, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
-use crate::prune_info::{ContestGroup, ContestKind, RowContest};
+use crate::prune_info::{ContestGroup, ContestKind, RowContest, StepFields};
 use jbt_model::attribute::Mixing;
-use jbt_model::combine::{Extreme, Met, ReduceCode, Setting};
+use jbt_model::combine::{Extreme, Met, ReduceCode, Setting, TakesApart};
 use jbt_model::expression::LARGEST_FIELD;
 
 /// What a subtree answers at a point.
@@ -32,6 +32,15 @@ use jbt_model::expression::LARGEST_FIELD;
 pub(super) struct Answer {
     pub(super) field: Value,
     pub(super) groups: Vec<GroupAnswer>,
+    /// In a range function: the contest of the operator that answers, if there is one and nobody else sees
+    /// its answer.
+    pub(super) contest: Option<usize>,
+}
+
+impl Answer {
+    pub(super) const fn new(field: Value, groups: Vec<GroupAnswer>) -> Self {
+        Self { field, groups, contest: None }
+    }
 }
 
 /// What an operator is, to its accumulators.
@@ -48,6 +57,8 @@ pub(super) struct Operator {
     pub(super) bounded: bool,
     /// Whether operands have several shapes: then ties need their order in the file.
     pub(super) ordered: bool,
+    /// Whether ranges will be made of it.
+    pub(super) ranged: bool,
     /// Whether the field will be differentiated.
     pub(super) moving: bool,
     /// How each attribute group of the query mixes.
@@ -86,15 +97,16 @@ impl Operator {
                 (extreme, ContestKind::All(start))
             }
             ReduceCode::Step(code) => {
-                let extreme = code.takes_apart()?;
+                let TakesApart { extreme, complements } = code.takes_apart()?;
                 let &InstKind::Column { table, column } = d.definition(*self.row.first()?)? else {
                     return None;
                 };
-                (extreme, ContestKind::Steps(table, column))
+                let fields = if complements { StepFields::Complements } else { StepFields::Plain };
+                (extreme, ContestKind::Steps(table, column, fields))
             }
         };
         let any = groups.iter().any(|group| group.rows);
-        any.then_some(RowContest { extreme, kind, groups, node: None })
+        any.then_some(RowContest { extreme, kind, groups, node: None, difference: None })
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody
@@ -212,7 +224,12 @@ impl State {
             }
             ReduceCode::Step(code) => {
                 let pair = code.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
-                self.field[0] = pair.field;
+                let sides = [self.field[0], operand.field];
+                self.field[0] = if operator.ranged {
+                    code.bounded(d, (pair.field, sides), &operator.row, operator.iso2)
+                } else {
+                    pair.field
+                };
                 let Some(known) = self.total else { return };
                 let (zero, one) = (d.constant(0.0), d.constant(1.0));
                 let is_known = d.lt(zero, known);
@@ -294,7 +311,7 @@ impl State {
                 GroupAnswer { channels, share: share_where_positive(d, seen, state.best), numbers: false }
             }
         });
-        Answer { field, groups: groups.collect() }
+        Answer::new(field, groups.collect())
     }
 }
 
@@ -400,7 +417,7 @@ pub(super) fn mapped(
         GroupAnswer { channels: where_positive(d, field, &channels, default), share, numbers: false }
     });
     let groups = groups.collect();
-    Answer { field, groups }
+    Answer::new(field, groups)
 }
 
 /// The answer of the left child of a difference, or of the subtracted one where that decides.
@@ -425,6 +442,5 @@ pub(super) fn difference(
             numbers: left.numbers && right.numbers,
         }
     });
-    let groups = groups.collect();
-    Answer { field, groups }
+    Answer::new(field, groups.collect())
 }

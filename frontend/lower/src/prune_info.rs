@@ -103,6 +103,29 @@ pub struct RowContest {
     pub groups: Vec<ContestGroup>,
     /// The probe of the operator's field, if there is one.
     pub node: Option<usize>,
+    /// If the operator is a side of a difference: the rest of that.
+    pub difference: Option<ContestDifference>,
+}
+
+/// The difference of which the operator of a [`RowContest`] is a side. Where the field of the difference is
+/// known to come from the other side, operands matter less.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ContestDifference {
+    /// Which side.
+    pub side: DifferenceSide,
+    /// The other side. Its table is above those of the contest.
+    pub other: ContestGroup,
+    /// The probe of the field of the difference, if there is one.
+    pub node: Option<usize>,
+}
+
+/// A side of a difference.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DifferenceSide {
+    /// What is left of.
+    Left,
+    /// The union of what is subtracted.
+    Right,
 }
 
 /// Who wins a [`RowContest`].
@@ -114,7 +137,16 @@ pub enum ContestKind {
     /// Of each operand and the result so far the extreme, if they are apart by this column of the operator's
     /// row. The result is the extreme of all, or beyond it by less than that column. Groups are in the order
     /// of operands.
-    Steps(Table, usize),
+    Steps(Table, usize, StepFields),
+}
+
+/// What of operands the steps of a [`RowContest`] take.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum StepFields {
+    /// Their fields.
+    Plain,
+    /// The field of the first, of the others the complement: `max(0, iso2 - field)`.
+    Complements,
 }
 
 /// Operands of a [`RowContest`].

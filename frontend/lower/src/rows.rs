@@ -83,6 +83,7 @@ impl<'a> Writer<'a> {
 
     /// Writes one row, and hands the rows of the tables under it out.
     fn row(&mut self, table: usize, recipe: &[RowStep], member: Member) {
+        jbt_ir::watch::look();
         self.places.begin(member);
         for step in recipe {
             match step {
@@ -164,6 +165,7 @@ impl<'a> Writer<'a> {
             let mut numbers = Vec::with_capacity(stride);
             let mut bad = None;
             for (row, out) in part.chunks_exact_mut(stride).enumerate() {
+                jbt_ir::watch::look();
                 let member = Member::particle(run, first / stride + row);
                 numbers.clear();
                 columns.iter().for_each(|(_, push)| push(scene, member, &mut numbers));

@@ -185,6 +185,7 @@ impl<'a> Classifier<'a> {
 
     /// The shape of an instance whose children have theirs.
     fn shape(&mut self, id: InstanceId) -> ShapeId {
+        jbt_ir::watch::look();
         let instance = self.scene.instance(id);
         match &instance.kind {
             InstanceKind::Leaf { field, computed, .. } if self.scene.field(*field).uses > 1 => {

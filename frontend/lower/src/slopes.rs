@@ -177,7 +177,8 @@ fn back(d: &mut FunctionBuilder, entry: &Entry, slope: Value, slopes: &mut HashM
         | Op::IntSub
         | Op::Shl
         | Op::Shr
-        | Op::StopGradient => {}
+        | Op::StopGradient
+        | Op::LowEnd => {}
     }
 }
 

@@ -157,6 +157,7 @@ impl<'a> Supports<'a> {
     }
 
     fn find(&self, id: InstanceId) -> Extent {
+        jbt_ir::watch::look();
         let of = |id: &InstanceId| self.extents[id.0 as usize];
         let all = |children: &[InstanceId]| children.iter().map(of).collect::<Vec<_>>();
         let (instance, iso) = (self.scene.instance(id), self.scene.tree.iso());

@@ -23,10 +23,15 @@ use jbt_model::written::{ParticleRadius, WrittenFalloff, WrittenParticles};
 /// The parameter for positions.
 pub(super) const AT: &str = "at";
 
+/// The parameter for a file that has the particles, and those for what its columns are.
+pub(super) const FILE_WORDS: [&str; 3] = ["file", "columns", "values"];
+
 /// What has been read of particles.
 #[derive(Default)]
 struct ParticleParts {
     at: Option<NumberArray>,
+    /// What stands in quotes behind each of [`FILE_WORDS`].
+    file: [Option<Token>; 3],
     radius: Option<PerParticle<Number>>,
     surface_radius: Option<PerParticle<Number>>,
     falloff: Option<WrittenFalloff>,
@@ -78,6 +83,15 @@ impl Parser<'_> {
     /// A parameter of particles whose word, `token`, has just been taken.
     fn particle_field(&mut self, token: Token, parts: &mut ParticleParts) {
         let word = self.text(token);
+        if let Some(place) = FILE_WORDS.iter().position(|known| *known == word)
+            && self.peek().kind == TokenKind::Quoted
+            && self.group(word).is_none()
+        {
+            self.report_again();
+            let quoted = self.next();
+            self.once(&mut parts.file[place], quoted, token);
+            return;
+        }
         let named = if word == GROUP_NODE { self.peek_word().map(|name| (self.next(), name)) } else { None };
         let (at, name) = named.unwrap_or((token, word));
         let is_field = named.is_none() && (word == AT || COMMON_FIELDS.contains(&word));
@@ -287,7 +301,7 @@ impl Parser<'_> {
     }
 
     fn finished_particles(&mut self, span: Span, parts: ParticleParts) -> Tree {
-        let ParticleParts { at, radius, surface_radius, falloff, strength, values, broken } = parts;
+        let ParticleParts { at, file, radius, surface_radius, falloff, strength, values, broken } = parts;
         if broken {
             return self.broken.clone();
         }
@@ -302,6 +316,25 @@ impl Parser<'_> {
             (Some(radius), None) => Some(ParticleRadius::Support(radius)),
             (None, radius) => radius.map(ParticleRadius::Surface),
         };
+        let [file, columns, arrays] = file;
+        if let Some(file) = file {
+            if at.is_some() {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "`at` and `file` of one node")
+                        .expected("expected one of them")
+                });
+                return self.broken.clone();
+            }
+            let quoted = [columns, arrays].map(|words| self.quoted_words(words));
+            let Some(mut written) = self.particle_file(file, quoted, radius.is_some()) else {
+                return self.broken.clone();
+            };
+            written.radius = radius.unwrap_or(written.radius);
+            written.strength = strength.unwrap_or(written.strength);
+            written.falloff = falloff.unwrap_or(written.falloff);
+            let written = values.into_iter().fold(written, WrittenParticles::with_values);
+            return Tree::at(span, written, Vec::new());
+        }
         let (Some(positions), Some(radius)) = (at.clone(), radius.clone()) else {
             let missing = [(at.is_none(), "`at`"), (radius.is_none(), "`radius`")];
             let missing: Vec<&str> = missing.into_iter().filter(|it| it.0).map(|it| it.1).collect();

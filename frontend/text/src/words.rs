@@ -37,6 +37,9 @@ pub(super) const EXPRESSION: &str = "expression";
 /// The word for particles.
 pub(super) const PARTICLES: &str = "particles";
 
+/// The word for a node whose field is 0 everywhere. A group or a definition may have this name.
+pub(super) const EMPTY: &str = "empty";
+
 /// The other words that begin a node.
 pub(super) const OTHERS: [&str; 9] =
     ["use", "blend", "select", "expression", "within", "falloff", "warp", PARTICLES, GROUP_NODE];

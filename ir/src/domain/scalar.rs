@@ -179,4 +179,9 @@ impl Domain for Scalar {
     fn stop_gradient(&mut self, a: f32) -> f32 {
         a
     }
+
+    #[inline]
+    fn low_end(&mut self, a: f32) -> f32 {
+        a
+    }
 }

@@ -13,6 +13,7 @@
 use crate::entity::{Entity, Inst, Store, Value, Values};
 use crate::function::{Function, InstKind};
 use crate::translate::renumber;
+use crate::watch::look;
 
 /// Where a value comes from.
 #[derive(Clone, Copy)]
@@ -33,6 +34,7 @@ pub fn dce(function: &Function) -> Function {
     let mut pruned = function.clone();
     let mut removed = vec![false; function.insts.len()];
     for (inst, data) in function.insts.iter() {
+        look();
         removed[inst.index()] = !data.results.iter().any(|&value| keep(value));
         let InstKind::Fold(fold) = &data.kind else { continue };
         let filter = |values: &[Value]| -> Values {
@@ -64,6 +66,7 @@ fn needed(function: &Function) -> Vec<bool> {
     let mut needed = vec![false; function.values.len()];
     let mut work: Vec<Value> = function.blocks[function.body].results.to_vec();
     while let Some(value) = work.pop() {
+        look();
         if std::mem::replace(&mut needed[value.index()], true) {
             continue;
         }

@@ -91,7 +91,8 @@ fn decide(masks: &HashMap<Value, bool>, op: Op, args: &[Value]) -> Option<Value>
         | Op::Exp
         | Op::Ln
         | Op::Pow
-        | Op::StopGradient => None,
+        | Op::StopGradient
+        | Op::LowEnd => None,
     }
 }
 

@@ -222,7 +222,7 @@ impl Fact for ValueFacts {
                 ..Self::default()
             },
             Op::Select => args[1].join(args[2]),
-            Op::StopGradient => args[0],
+            Op::StopGradient | Op::LowEnd => args[0],
             // Only -0 and -0 give -0: a sum that cancels is +0, and a sum is never too small to be exact.
             Op::Add => minus(args[0].is_not_minus_zero || args[1].is_not_minus_zero),
             Op::Fma => minus(args[2].constant.is_some_and(|number| number.abs() >= LARGE)),
@@ -281,7 +281,7 @@ fn step(op: Op, args: &[Value], facts: &[ValueFacts], now: &[Option<Now>], resul
     let facts_of = |value: Value| facts[value.index()];
     let is_positive = |value: Value| facts_of(value).is_positive;
     match (op, &args[..]) {
-        (Op::StopGradient, &[value]) => value,
+        (Op::StopGradient | Op::LowEnd, &[value]) => value,
         (Op::Mul, &[Zero { .. }, Zero { .. }]) => Zero { is_plus: false },
         (Op::Mul, &[Zero { .. }, Number(number)] | &[Number(number), Zero { .. }]) if number.is_finite() => {
             Zero { is_plus: false }

@@ -11,7 +11,7 @@ use crate::math;
 use crate::op::Op;
 use crate::translate::rewrite;
 
-/// The function without transcendentals and `stop_gradient`.
+/// The function without transcendentals, `stop_gradient` and `low_end`.
 #[must_use]
 pub fn legalize(function: &Function) -> Function {
     rewrite(function, expand)
@@ -24,7 +24,7 @@ fn expand(builder: &mut FunctionBuilder, op: Op, args: &[Value]) -> Value {
         Op::Exp => math::exp(builder, args[0]),
         Op::Ln => math::ln(builder, args[0]),
         Op::Pow => math::pow(builder, args[0], args[1]),
-        Op::StopGradient => args[0],
+        Op::StopGradient | Op::LowEnd => args[0],
         Op::Add
         | Op::Sub
         | Op::Mul

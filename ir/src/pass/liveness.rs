@@ -126,6 +126,7 @@ impl<'a> Liveness<'a> {
         }
         let mut peak = self.count;
         for &inst in order.iter().rev() {
+            crate::watch::look();
             let inst_data = &function.insts[inst];
             for &value in &inst_data.results {
                 self.begin(value);

@@ -38,6 +38,7 @@ use crate::entity::{Block, Entity, Inst, Table, Value};
 use crate::function::{Fold, Function, InstData, InstKind};
 use crate::op::Op;
 use crate::origin::Origin;
+use crate::watch::look;
 
 /// The parts of some accumulators, one accumulator behind the other. Four take no allocation.
 pub(crate) type AccumulatorParts<P> = SmallVec<[P; 4]>;
@@ -125,6 +126,7 @@ impl<T: Translation> Walk<'_, T> {
     fn inst(&mut self, inst: Inst) {
         let function = self.function;
         let data = &function.insts[inst];
+        look();
         self.translation.begin(data.origin);
         let result = match &data.kind {
             InstKind::Input(index) => self.translation.input(*index),

@@ -177,6 +177,9 @@ impl Backend for Cranelift {
 /// they are not.
 fn guard<T>(work: impl FnOnce() -> T) -> Result<T, CompileError> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        if jbt_ir::watch::is_stop(&*panic) {
+            panic::resume_unwind(panic);
+        }
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
         CompileError::Cranelift(text.to_owned())

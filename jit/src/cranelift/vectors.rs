@@ -238,4 +238,8 @@ impl<const K: usize> Domain for Vectors<'_, K> {
     fn stop_gradient(&mut self, a: [Value; K]) -> [Value; K] {
         a
     }
+
+    fn low_end(&mut self, a: [Value; K]) -> [Value; K] {
+        a
+    }
 }

@@ -317,7 +317,7 @@ impl<'a> Builder<'a> {
     }
 
     fn op(&mut self, op: Op, args: &[Value], result: Value) {
-        if matches!(op, Op::StopGradient | Op::ToBits | Op::FromBits) {
+        if matches!(op, Op::StopGradient | Op::LowEnd | Op::ToBits | Op::FromBits) {
             let name = self.read(args[0]);
             self.bindings[result.index()] = Binding::Name(name);
             return;

@@ -146,6 +146,7 @@ fn walk(state: &mut WalkState<'_>) {
     let (linear, lives) = (state.linear, state.lives);
     for (position, item) in (0..).zip(&linear.items) {
         state.position = position;
+        jbt_ir::watch::look();
         match *item {
             LinearItem::Op { op, to, args } => state.op(op, to, args),
             LinearItem::Read { to, from } => state.read(to, from),

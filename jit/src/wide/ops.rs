@@ -64,7 +64,7 @@ impl WalkState<'_> {
             Op::Select => self.select(to, [a, b, c], is_last),
             Op::Shl => self.shift(true, to, [a, b], is_last),
             Op::Shr => self.shift(false, to, [a, b], is_last),
-            Op::ToBits | Op::FromBits | Op::StopGradient => {
+            Op::ToBits | Op::FromBits | Op::StopGradient | Op::LowEnd => {
                 unreachable!("the list has other names for these")
             }
             Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => unreachable!("functions are checked first"),

@@ -1,6 +1,6 @@
 """The native part: what the package's Python calls. Users call the package."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, final, overload
 
 import numpy as np
@@ -9,18 +9,24 @@ from numpy.typing import NDArray
 __all__ = [
     "Evaluator",
     "Falloff",
+    "Lattice",
     "Model",
     "Number",
     "Pattern",
+    "RowSource",
+    "Shape",
     "Term",
     "__version__",
+    "block_facts",
     "call",
     "compile_counters",
     "coordinate",
+    "cpu_level",
     "encode_png",
     "engines",
     "falloff_of",
     "functions",
+    "join",
     "members",
     "mesh_formats",
     "points",
@@ -231,10 +237,55 @@ class Model:
         threads: int | None,
         progress: _Told,
     ) -> dict[str, Any]: ...
+    def lattice(
+        self, resolution: int | None, cell: float | None, bounds: _Box
+    ) -> tuple[Lattice, list[float]]: ...
+    def busy(
+        self, lattice: Lattice, edge: int, threads: int | None
+    ) -> list[tuple[tuple[int, int, int], int]]: ...
     def owner(self, points: _Doubles, threads: int | None) -> dict[str, Any]: ...
     def sides(self) -> Evaluator: ...
     def __eq__(self, other: object, /) -> bool: ...
 
+@final
+class Lattice:
+    def __new__(cls, origin: Sequence[float], spacing: float, cells: Sequence[int]) -> Lattice: ...
+    def parts(self) -> tuple[list[float], float, list[int]]: ...
+    def bounds(self, edge: int, place: Sequence[int], reach: int) -> tuple[list[float], list[float]]: ...
+    def points(self, first: Sequence[int], cells: Sequence[int]) -> tuple[list[float], list[float]]: ...
+
+@final
+class RowSource:
+    def __new__(cls, model: Model, query: tuple[bool, bool] | None = None) -> RowSource: ...
+    def shape(self) -> bytes: ...
+    def rows(self, low: Sequence[float], high: Sequence[float]) -> tuple[bytes, int]: ...
+
+@final
+class Shape:
+    def __new__(cls, bytes: bytes) -> Shape: ...
+    def fingerprint(self) -> int: ...
+    def block(
+        self,
+        rows: bytes,
+        lattice: Lattice,
+        edge: int,
+        place: Sequence[int],
+        reach: int,
+        threads: int | None,
+    ) -> bytes | None: ...
+    def sample(
+        self,
+        rows: bytes,
+        query: tuple[bool, bool],
+        lattice: Lattice,
+        first: Sequence[int],
+        cells: Sequence[int],
+        threads: int | None,
+    ) -> tuple[list[str], list[_Floats]]: ...
+
+def block_facts(bytes: bytes) -> tuple[int, int, int, bool, str]: ...
+def join(blocks: list[bytes]) -> dict[str, Any]: ...
+def cpu_level() -> str: ...
 def members() -> list[dict[str, Any]]: ...
 def functions() -> list[tuple[str, int, int]]: ...
 def scene_formats() -> list[str]: ...

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Plane, PlaneKind, others};
 use crate::boxes::Box3;
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -207,13 +207,9 @@ impl Slicer {
         };
         let tree = compiled.tree();
         let view = PlaneView { axes, at: tree.origin().rounded([at; 3])[across] };
-        let needs = [
-            Need::Answers(PointScope::Regions, Query::ATTRIBUTES),
-            Need::Ranges,
-            Need::Answers(PointScope::Regions, Query::FIELD),
-        ];
         let has_attributes = query.contains(AnswerKind::Attributes);
-        compiled.prepare(if has_attributes { &needs } else { &needs[1..] })?;
+        let asked = if has_attributes { Query::ATTRIBUTES } else { Query::FIELD };
+        compiled.prepare(&Task::Slices(asked).needs())?;
         let full = has_attributes.then(|| compiled.regional(Query::ATTRIBUTES)).transpose()?;
         Ok(Self {
             plane: *plane,

@@ -19,12 +19,15 @@ use tempfile::TempPath;
 /// it was.
 ///
 /// A file that is there already keeps its permissions, a new one gets those that files usually get. A link is
-/// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come.
+/// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come. So is
+/// a file that may be written to in a folder that takes no new file: [`is_in_place`](Self::is_in_place) says
+/// so, for whoever has to be warned.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
     /// Where the contents go; `None` if they are there already.
     target: Option<PendingFile>,
+    in_place: bool,
 }
 
 #[derive(Debug)]
@@ -49,22 +52,31 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there
-    /// or lets nobody create files, even if the file itself could be written to.
+    /// Whatever the system refuses; a folder, a file that is read-only, a path whose folder is not there, and a
+    /// new file, or one that is not to be replaced, in a folder that takes no new file.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {
                 let file = File::options().write(true).open(path)?;
-                Ok(Self { file, target: None })
+                Ok(Self { file, target: None, in_place: false })
             }
             PathKind::File { path, folder, old } => {
                 #[cfg(target_os = "linux")]
                 nameless::remove_left(&path);
-                let (file, temporary) = begin(&folder)?;
+                let (file, temporary) = match begin(&folder) {
+                    Ok(begun) => begun,
+                    Err(error) if replace && old.is_some() && takes_no_file(&error) => {
+                        let file = in_place(&path, error)?;
+                        file.set_len(0)?;
+                        return Ok(Self { file, target: None, in_place: true });
+                    }
+                    Err(error) => return Err(error),
+                };
                 if let Some(old) = old {
                     file.set_permissions(old)?;
                 }
-                Ok(Self { file, target: Some(PendingFile { temporary, path, replace }) })
+                let target = Some(PendingFile { temporary, path, replace });
+                Ok(Self { file, target, in_place: false })
             }
         }
     }
@@ -78,8 +90,17 @@ impl AtomicFile {
         match PathKind::at(path)? {
             // To open a pipe is to wait for its reader.
             PathKind::Direct(_) => Ok(()),
-            PathKind::File { folder, .. } => begin(&folder).map(drop),
+            PathKind::File { folder, path, old } => match begin(&folder) {
+                Err(error) if old.is_some() && takes_no_file(&error) => in_place(&path, error).map(drop),
+                begun => begun.map(drop),
+            },
         }
+    }
+
+    /// Whether the old contents are gone from the beginning: the folder of the file takes no new one.
+    #[must_use]
+    pub fn is_in_place(&self) -> bool {
+        self.in_place
     }
 
     /// The temporary name of the contents, if they have one: for a program that ends without dropping this.
@@ -151,17 +172,24 @@ fn begin(folder: &Path) -> io::Result<(File, Option<TempPath>)> {
     Ok((file, Some(temporary)))
 }
 
-/// Says that it is the folder that lets nobody create files: the file itself may be fine.
+/// Whether it is the folder that lets nobody create files: the file itself may be fine.
+fn takes_no_file(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem)
+}
+
+/// Opens a file itself, where none can be written beside it; `error` says why not.
+fn in_place(path: &Path, error: io::Error) -> io::Result<File> {
+    File::options().write(true).open(path).map_err(|_| error)
+}
+
+/// Says so where it is the folder.
 fn about_folder(folder: &Path, error: io::Error) -> io::Error {
-    match error.kind() {
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            let folder = escape(&folder.display().to_string());
-            let message =
-                format!("{error}: contents are written beside the file, and {folder} takes no new file");
-            io::Error::new(error.kind(), message)
-        }
-        _ => error,
+    if !takes_no_file(&error) {
+        return error;
     }
+    let folder = escape(&folder.display().to_string());
+    let message = format!("{error}: contents are written beside the file, and {folder} takes no new file");
+    io::Error::new(error.kind(), message)
 }
 
 #[cfg(target_os = "linux")]

@@ -33,7 +33,7 @@ macro_rules! formats {
             pub(super) fn write(
                 self,
                 mesh: &Mesh,
-                choices: FileChoices,
+                choices: FileChoices<'_>,
                 out: &mut impl Write,
             ) -> Result<(), WriteError> {
                 match self { $( Format::$variant => $module::write(mesh, choices, out), )+ }
@@ -81,7 +81,7 @@ impl Format {
 
 /// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what
 /// [`Conventions`] say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExportOptions {
     /// The axis of the file that points up.
@@ -90,6 +90,8 @@ pub struct ExportOptions {
     pub colors: Option<ColorEncoding>,
     /// What a unit of the scene is, in a format that says so.
     pub unit: Option<LengthUnit>,
+    /// What the mesh is called, in a format that has a place for it: see [`Conventions::name`].
+    pub name: Option<String>,
 }
 
 impl ExportOptions {
@@ -112,13 +114,14 @@ impl ExportOptions {
     }
 }
 
-impl FileChoices {
-    pub(super) fn new(mesh: &Mesh, format: Format, options: &ExportOptions) -> Self {
+impl<'a> FileChoices<'a> {
+    pub(super) fn new(mesh: &Mesh, format: Format, options: &'a ExportOptions) -> Self {
         Self {
             up: options.up_in(format),
             model: mesh.orientation.up,
             colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear),
             unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
+            name: options.name.as_deref(),
         }
     }
 }

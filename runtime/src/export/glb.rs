@@ -18,6 +18,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
+use std::ops::Range;
 
 use jbt_model::orientation::ModelUp;
 use serde_json::{Map, Value, json};
@@ -50,11 +51,12 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`COLOR_0`, 32-bit floats", encoding: ColorEncoding::Linear }),
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
+    name: Some("node and mesh"),
     far: FarMeshes::Node,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
     let (json, binary) = describe(mesh, choices, &attributes);
     // Printing a JSON value cannot fail.
@@ -92,7 +94,7 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
 
 fn write_binary(
     mesh: &Mesh,
-    choices: FileChoices,
+    choices: FileChoices<'_>,
     attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
@@ -124,14 +126,19 @@ fn write_binary(
             })?;
         }
     }
+    let pieces = mesh.pieces();
     write_items(out, mesh.triangles.len(), |triangle, bytes| {
-        push_three(bytes, mesh.triangles[triangle]);
+        // Of a piece, whose vertices count from its first one.
+        let piece = &pieces[pieces.partition_point(|piece| piece.triangles.end <= triangle)];
+        let first = piece.vertices.start as u32;
+        push_three(bytes, mesh.triangles[triangle].map(|vertex| vertex - first));
         Ok(())
     })?;
     Ok(())
 }
 
-/// The accessors and buffer views, one of each for every plane of numbers, in the order of the bytes.
+/// The buffer views, one for every plane of numbers, and accessors, one for each of them and each piece, in the
+/// order of the bytes.
 #[derive(Default)]
 struct BufferLayout {
     accessors: Vec<Value>,
@@ -139,63 +146,105 @@ struct BufferLayout {
     bytes: u64,
 }
 
+/// A plane of numbers: its view, and the width of its elements.
+#[derive(Clone, Copy)]
+struct Plane {
+    view: usize,
+    component: u32,
+    width: usize,
+}
+
 impl BufferLayout {
-    /// Adds `count` elements of `width` four-byte numbers. Returns the index of the accessor.
-    fn add(&mut self, target: u32, component: u32, width: usize, count: usize) -> usize {
+    /// Adds a view of `count` elements of `width` four-byte numbers.
+    fn plane(&mut self, target: u32, component: u32, width: usize, count: usize) -> Plane {
         let length = 4 * width as u64 * count as u64;
-        let index = self.accessors.len();
-        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][width - 1];
+        let view = self.views.len();
         self.views
             .push(json!({ "buffer": 0, "byteOffset": self.bytes, "byteLength": length, "target": target }));
-        self.accessors
-            .push(json!({ "bufferView": index, "componentType": component, "count": count, "type": kind }));
         self.bytes += length;
-        index
+        Plane { view, component, width }
+    }
+
+    /// Adds an accessor to some elements of a plane. Returns its index.
+    fn accessor(&mut self, plane: Plane, elements: Range<usize>) -> usize {
+        let Plane { view, component, width } = plane;
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][width - 1];
+        let count = elements.len();
+        let mut accessor =
+            json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
+        if elements.start > 0 {
+            accessor["byteOffset"] = json!(4 * width as u64 * elements.start as u64);
+        }
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
     }
 }
 
 /// The JSON text, and how many bytes the binary chunk has.
-fn describe(mesh: &Mesh, choices: FileChoices, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
+fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
     let asset = json!({ "version": "2.0", "generator": "jbt" });
     if mesh.triangles.is_empty() {
         return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
     }
     let count = mesh.positions.len();
     let mut layout = BufferLayout::default();
-    let mut vertex = Map::new();
-    let positions = layout.add(ARRAY_BUFFER, FLOAT, 3, count);
-    // In f64, so that their decimals are those of the same numbers in any parser.
-    let Box3 { low, high } = mesh.bounds().unwrap_or_default().map(|corner| corner.map(f64::from));
-    layout.accessors[positions]["min"] = json!(low);
-    layout.accessors[positions]["max"] = json!(high);
-    vertex.insert("POSITION".to_owned(), json!(positions));
-    vertex.insert("NORMAL".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 3, count)));
+    let mut planes: Vec<(String, Plane)> = Vec::new();
+    let mut plane = |name: &str, width: usize| {
+        planes.push((name.to_owned(), layout.plane(ARRAY_BUFFER, FLOAT, width, count)));
+    };
+    plane("POSITION", 3);
+    plane("NORMAL", 3);
     if colors(mesh).is_some() {
-        vertex.insert("COLOR_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 3, count)));
+        plane("COLOR_0", 3);
     }
     if uvs(mesh).is_some() {
-        vertex.insert("TEXCOORD_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 2, count)));
+        plane("TEXCOORD_0", 2);
     }
     for NamedAttribute { names, attribute } in attributes {
         for (part, name) in names.iter().enumerate() {
-            let width = WIDEST.min(attribute.width - WIDEST * part);
-            let accessor = layout.add(ARRAY_BUFFER, FLOAT, width, count);
-            vertex.insert(name.clone(), json!(accessor));
+            plane(name, WIDEST.min(attribute.width - WIDEST * part));
         }
     }
-    let indices = layout.add(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
+    let indices = layout.plane(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
+    let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
+    for piece in mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()) {
+        let mut vertex = Map::new();
+        for (name, plane) in &planes {
+            let accessor = layout.accessor(*plane, piece.vertices.clone());
+            vertex.insert(name.clone(), json!(accessor));
+        }
+        // In f64, so that their decimals are those of the same numbers in any parser.
+        let bounds = Box3::around(&mesh.positions[piece.vertices.clone()]).unwrap_or_default();
+        let Box3 { low, high } = bounds.map(|corner| corner.map(f64::from));
+        let positions = &vertex["POSITION"].as_u64().unwrap_or_default();
+        layout.accessors[*positions as usize]["min"] = json!(low);
+        layout.accessors[*positions as usize]["max"] = json!(high);
+        let corners = 3 * piece.triangles.start..3 * piece.triangles.end;
+        let indices = layout.accessor(indices, corners);
+        let mut primitive = json!({ "attributes": vertex, "indices": indices });
+        if colors(mesh).is_none() {
+            primitive["material"] = json!(0);
+        }
+        let (mut node, mut shape) = (node(mesh, choices), json!({ "primitives": [primitive] }));
+        node["mesh"] = json!(meshes.len());
+        if let Some(name) = piece.name.or(choices.name) {
+            node["name"] = json!(name);
+            shape["name"] = json!(name);
+        }
+        nodes.push(node);
+        meshes.push(shape);
+    }
     let mut json = json!({
         "asset": asset,
         "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [node(mesh, choices)],
-        "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices }] }],
+        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "nodes": nodes,
+        "meshes": meshes,
         "accessors": layout.accessors,
         "bufferViews": layout.views,
         "buffers": [{ "byteLength": layout.bytes }],
     });
     if colors(mesh).is_none() {
-        json["meshes"][0]["primitives"][0]["material"] = json!(0);
         json["materials"] = json!([{ "pbrMetallicRoughness": {
             "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7
         } }]);
@@ -205,7 +254,7 @@ fn describe(mesh: &Mesh, choices: FileChoices, attributes: &[NamedAttribute<'_>]
 
 /// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node
 /// turns it there, then moves it to its origin.
-fn node(mesh: &Mesh, choices: FileChoices) -> Value {
+fn node(mesh: &Mesh, choices: FileChoices<'_>) -> Value {
     // A quaternion (x, y, z, w): by 90 degrees about x, one way or the other.
     let turned = |x: f64| json!({ "mesh": 0, "rotation": [x, 0.0, 0.0, FRAC_1_SQRT_2] });
     let mut node = match (choices.model, choices.up) {

@@ -10,9 +10,9 @@
 //! anything; [`save`] writes a file under a temporary name and renames it, so that nobody ever sees half a
 //! file.
 //!
-//! A mesh may have an [origin](Mesh::origin) of its own. GLB, 3MF and USDA have it in a node, and vertices as
-//! they are in the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
-//! [loses digits](loses_digits).
+//! A mesh may have an [origin](Mesh::origin) of its own. GLB, 3MF and USDA have it in a node, and vertices
+//! as they are in the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but
+//! rounded to f32, which [loses digits](loses_digits).
 
 mod atomic;
 mod conventions;

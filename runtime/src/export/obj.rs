@@ -19,13 +19,21 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "behind the position, decimals", encoding: ColorEncoding::Srgb }),
     uv: Some("`vt`"),
     attributes: None,
+    name: Some("`o`"),
     far: FarMeshes::Digits,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let FileChoices { up, colors: encoding, .. } = choices;
     writeln!(out, "# jbt, {up} up")?;
+    let object = |name: &str| {
+        // A blank would end the name for some readers.
+        format!("o {}", name.replace(|c: char| c.is_whitespace() || c.is_control(), "_"))
+    };
+    if let Some(name) = choices.name.filter(|_| mesh.parts.is_empty()) {
+        writeln!(out, "{}", object(name))?;
+    }
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
     }
@@ -44,21 +52,28 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
             writeln!(bytes, "vt {} {}", finite(uvs[2 * vertex]), finite(uvs[2 * vertex + 1]))
         })?;
     }
-    write_items(out, mesh.triangles.len(), |triangle, bytes| {
-        // Counted from 1, which may be one more than a u32 holds.
-        let [a, b, c] = mesh.triangles[triangle].map(|vertex| u64::from(vertex) + 1);
-        match uvs {
-            Some(_) => writeln!(bytes, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
-            None => writeln!(bytes, "f {a}//{a} {b}//{b} {c}//{c}"),
+    for piece in mesh.pieces() {
+        if let Some(name) = piece.name {
+            writeln!(out, "{}", object(name))?;
         }
-    })?;
+        let first = piece.triangles.start;
+        write_items(out, piece.triangles.len(), |triangle, bytes| {
+            let triangle = first + triangle;
+            // Counted from 1, which may be one more than a u32 holds.
+            let [a, b, c] = mesh.triangles[triangle].map(|vertex| u64::from(vertex) + 1);
+            match uvs {
+                Some(_) => writeln!(bytes, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
+                None => writeln!(bytes, "f {a}//{a} {b}//{b} {c}//{c}"),
+            }
+        })?;
+    }
     Ok(())
 }
 
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    choices: FileChoices,
+    choices: FileChoices<'_>,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

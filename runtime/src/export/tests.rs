@@ -29,6 +29,7 @@ fn tetrahedron() -> Mesh {
             attribute("", 1, &[2.5; 4]),
         ],
         triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        parts: Vec::new(),
     }
 }
 

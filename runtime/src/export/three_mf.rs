@@ -8,7 +8,7 @@ use std::io::Write;
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
 use super::parts::{WriteError, colors, write_items};
 use super::zip::Archive;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshPiece};
 use crate::srgb;
 
 /// What is usual in these files.
@@ -20,6 +20,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`colorgroup`, 8 bits", encoding: ColorEncoding::Srgb }),
     uv: None,
     attributes: None,
+    name: Some("`name` of the object"),
     far: FarMeshes::Node,
     unit: Some(LengthUnit::Millimetre),
 };
@@ -34,7 +35,11 @@ const RELATIONS: &str = "<Relationships xmlns=\"http://schemas.openxmlformats.or
 const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 const MATERIALS: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, mut out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(
+    mesh: &Mesh,
+    choices: FileChoices<'_>,
+    mut out: &mut impl Write,
+) -> Result<(), WriteError> {
     let mut archive = Archive::new(&mut out);
     archive.add("[Content_Types].xml", |out| Ok(write!(out, "{HEAD}{TYPES}")?))?;
     archive.add("_rels/.rels", |out| Ok(write!(out, "{HEAD}{RELATIONS}")?))?;
@@ -54,7 +59,7 @@ const fn unit(unit: LengthUnit) -> &'static str {
     }
 }
 
-fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(), WriteError> {
+fn model(mesh: &Mesh, choices: FileChoices<'_>, mut out: &mut dyn Write) -> Result<(), WriteError> {
     let FileChoices { colors: encoding, unit: length, .. } = choices;
     write!(out, "{HEAD}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{CORE}\"", unit(length))?;
     if colors(mesh).is_some() {
@@ -74,32 +79,70 @@ fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(
         })?;
         writeln!(out, "</m:colorgroup>")?;
     }
-    let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
-    writeln!(out, "<object id=\"2\" type=\"model\"{group}>\n<mesh>\n<vertices>")?;
-    write_items(&mut out, mesh.positions.len(), |vertex, bytes| {
-        let [x, y, z] = choices.place(mesh.positions[vertex]);
-        writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
-    })?;
-    writeln!(out, "</vertices>\n<triangles>")?;
-    write_items(&mut out, mesh.triangles.len(), |triangle, bytes| {
-        let triangle = mesh.triangles[triangle];
-        let [a, b, c] = triangle;
-        write!(bytes, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
-        if let Some(palette) = &palette {
-            let [a, b, c] = triangle.map(|vertex| palette.places[vertex as usize]);
-            write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?;
-        }
-        writeln!(bytes, "/>")
-    })?;
-    writeln!(out, "</triangles>\n</mesh>\n</object>\n</resources>\n<build>")?;
+    let pieces: Vec<_> = mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()).collect();
+    for (place, piece) in pieces.iter().enumerate() {
+        object(mesh, choices, piece, (place + 2, palette.as_ref()), out)?;
+    }
+    writeln!(out, "</resources>\n<build>")?;
     let [x, y, z] = choices.place(mesh.origin);
     let moved = if mesh.is_about_world() {
         String::new()
     } else {
         format!(" transform=\"1 0 0 0 1 0 0 0 1 {x} {y} {z}\"")
     };
-    writeln!(out, "<item objectid=\"2\"{moved}/>\n</build>\n</model>")?;
+    for place in 0..pieces.len() {
+        writeln!(out, "<item objectid=\"{}\"{moved}/>", place + 2)?;
+    }
+    writeln!(out, "</build>\n</model>")?;
     Ok(())
+}
+
+/// The object of a piece, with its number.
+fn object(
+    mesh: &Mesh,
+    choices: FileChoices<'_>,
+    piece: &MeshPiece<'_>,
+    (number, palette): (usize, Option<&Palette>),
+    mut out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
+    let name = piece.name.or(choices.name);
+    let name = name.map_or_else(String::new, |name| format!(" name=\"{}\"", in_quotes(name)));
+    writeln!(out, "<object id=\"{number}\" type=\"model\"{name}{group}>\n<mesh>\n<vertices>")?;
+    let first = piece.vertices.start;
+    write_items(&mut out, piece.vertices.len(), |vertex, bytes| {
+        let [x, y, z] = choices.place(mesh.positions[first + vertex]);
+        writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
+    })?;
+    writeln!(out, "</vertices>\n<triangles>")?;
+    write_items(&mut out, piece.triangles.len(), |triangle, bytes| {
+        let triangle = mesh.triangles[piece.triangles.start + triangle];
+        let [a, b, c] = triangle.map(|vertex| vertex as usize - first);
+        write!(bytes, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+        if let Some(palette) = palette {
+            let [a, b, c] = triangle.map(|vertex| palette.places[vertex as usize]);
+            write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?;
+        }
+        writeln!(bytes, "/>")
+    })?;
+    writeln!(out, "</triangles>\n</mesh>\n</object>")?;
+    Ok(())
+}
+
+/// A text as the value of an attribute of XML 1.0, which has no control characters.
+fn in_quotes(text: &str) -> String {
+    let mut quoted = String::new();
+    for char in text.chars() {
+        match char {
+            '&' => quoted.push_str("&amp;"),
+            '<' => quoted.push_str("&lt;"),
+            '"' => quoted.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => quoted.push('_'),
+            char if char.is_control() => quoted.push('_'),
+            char => quoted.push(char),
+        }
+    }
+    quoted
 }
 
 /// The colours of a mesh, each once, and the place of that of each vertex.

@@ -1,14 +1,15 @@
 //! USDA, the text of Universal Scene Description: one mesh below a transform, which has the origin.
 //!
-//! Numbers are the shortest that give the same f32 back. Attributes are primvars of each vertex: `displayColor`,
-//! which is linear, `st` and `primvars:name` with as many elements as the attribute is wide.
+//! Numbers are the shortest that give the same f32 back. Attributes are primvars of each vertex:
+//! `displayColor`, which is linear, `st` and `primvars:name` with as many elements as the attribute is
+//! wide.
 
 use std::fmt::Display;
 use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
 use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_items};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshPiece};
 
 /// What is usual in these files.
 pub(super) const CONVENTIONS: Conventions = Conventions {
@@ -19,6 +20,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`displayColor`, decimals", encoding: ColorEncoding::Linear }),
     uv: Some("`st`"),
     attributes: Some("`primvars`, decimals"),
+    name: Some("`displayName`"),
     far: FarMeshes::Node,
     unit: Some(LengthUnit::Metre),
 };
@@ -26,8 +28,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
 /// Names that are always what they are.
 const RESERVED: [&str; 2] = ["displayColor", "st"];
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
-    let FileChoices { up, colors: encoding, unit, .. } = choices;
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, unit, .. } = choices;
     let axis = match up {
         Up::Y => "Y",
         Up::Z => "Z",
@@ -40,39 +42,79 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         writeln!(out, "    double3 xformOp:translate = ({x}, {y}, {z})")?;
         writeln!(out, "    uniform token[] xformOpOrder = [\"xformOp:translate\"]")?;
     }
-    writeln!(out, "    def Mesh \"mesh\"\n    {{")?;
+    let attributes = others(mesh, &RESERVED, spell);
+    for (place, piece) in mesh.pieces().iter().enumerate() {
+        write_piece(mesh, choices, (place, piece), &attributes, out)?;
+    }
+    writeln!(out, "}}")?;
+    Ok(())
+}
+
+/// A mesh for a piece, with its number.
+fn write_piece(
+    mesh: &Mesh,
+    choices: FileChoices<'_>,
+    (place, piece): (usize, &MeshPiece<'_>),
+    attributes: &[NamedAttribute<'_>],
+    out: &mut impl Write,
+) -> Result<(), WriteError> {
+    let encoding = choices.colors;
+    let prim = if place == 0 { "mesh".to_owned() } else { format!("mesh_{place}") };
+    let name = piece.name.or(choices.name).map_or_else(String::new, |name| {
+        // Line ends and quotes would end it.
+        let name = name.replace(['\\', '"'], "_").replace(char::is_control, "_");
+        format!(" (\n        displayName = \"{name}\"\n    )")
+    });
+    writeln!(out, "    def Mesh \"{prim}\"{name}\n    {{")?;
+    let first = piece.vertices.start;
     let corner = |pick: fn(f32, f32) -> f32| {
-        let all = mesh.positions.iter().map(|&position| choices.place(position));
+        let all = mesh.positions[piece.vertices.clone()].iter().map(|&position| choices.place(position));
         all.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis]))).unwrap_or_default()
     };
     let tuple = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
     writeln!(out, "        float3[] extent = [{}, {}]", tuple(corner(f32::min)), tuple(corner(f32::max)))?;
     writeln!(out, "        uniform token subdivisionScheme = \"none\"")?;
-    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    let (vertices, triangles) = (piece.vertices.len(), piece.triangles.len());
     list(out, "int[] faceVertexCounts", triangles, |_| 3, "")?;
     list(
         out,
         "int[] faceVertexIndices",
         triangles,
         |triangle| {
-            let [a, b, c] = mesh.triangles[triangle];
+            let [a, b, c] =
+                mesh.triangles[piece.triangles.start + triangle].map(|vertex| vertex as usize - first);
             format!("{a}, {b}, {c}")
         },
         "",
     )?;
-    list(out, "point3f[] points", vertices, |vertex| tuple(choices.place(mesh.positions[vertex])), "")?;
-    list(out, "normal3f[] normals", vertices, |vertex| tuple(choices.place(mesh.normals[vertex])), EACH)?;
+    list(
+        out,
+        "point3f[] points",
+        vertices,
+        |vertex| tuple(choices.place(mesh.positions[first + vertex])),
+        "",
+    )?;
+    list(
+        out,
+        "normal3f[] normals",
+        vertices,
+        |vertex| tuple(choices.place(mesh.normals[first + vertex])),
+        EACH,
+    )?;
     if let Some(colors) = colors(mesh) {
-        let color = |vertex: usize| tuple(colors[vertex].map(|channel| encoding.encode(channel)));
+        let color = |vertex: usize| tuple(colors[first + vertex].map(|channel| encoding.encode(channel)));
         list(out, "color3f[] primvars:displayColor", vertices, color, EACH)?;
     }
     if let Some(uvs) = uvs(mesh) {
-        let uv = |vertex: usize| format!("({}, {})", finite(uvs[2 * vertex]), finite(uvs[2 * vertex + 1]));
+        let uv = |vertex: usize| {
+            format!("({}, {})", finite(uvs[2 * (first + vertex)]), finite(uvs[2 * (first + vertex) + 1]))
+        };
         list(out, "texCoord2f[] primvars:st", vertices, uv, EACH)?;
     }
-    for NamedAttribute { names, attribute } in others(mesh, &RESERVED, spell) {
+    for NamedAttribute { names, attribute } in attributes {
         let (width, name) = (attribute.width, format!("float[] primvars:{}", names[0]));
         let values = |vertex: usize| {
+            let vertex = first + vertex;
             let values = &attribute.values[width * vertex..width * (vertex + 1)];
             values.iter().map(|&value| finite(value).to_string()).collect::<Vec<_>>().join(", ")
         };
@@ -81,7 +123,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         );
         list(out, &name, vertices, values, if width == 1 { EACH } else { &about })?;
     }
-    writeln!(out, "    }}\n}}")?;
+    writeln!(out, "    }}")?;
     Ok(())
 }
 

@@ -1,5 +1,5 @@
-//! Archives (ZIP, APPNOTE 6.3), written from front to back: entries are compressed as they come, and their sizes
-//! follow them.
+//! Archives (ZIP, APPNOTE 6.3), written from front to back: entries are compressed as they come, and their
+//! sizes follow them.
 
 use std::io::{self, Write};
 

@@ -24,4 +24,5 @@ mod optimise;
 pub(crate) use bound::{BoundKernel, Kernel};
 pub(crate) use engine::Wish;
 pub use engine::{Engine, form, forms};
+pub(crate) use optimise::grown;
 pub use optimise::{Purpose, optimise, optimise_straight, passes, straighten};

@@ -50,6 +50,15 @@ pub fn optimise(
     finish(run(function, passes(purpose), observer)?)
 }
 
+/// The function as long as it gets: after the passes that make it longer.
+///
+/// # Errors
+/// Those of [`optimise`].
+pub fn grown(function: Function, purpose: Purpose) -> Result<Function, CompileError> {
+    let longer = passes(purpose).take(purpose.first_passes().len() + 1);
+    run(function, longer, &mut |_, _| {})
+}
+
 /// Straight code for a lowered function and its tables, if it is worth it. The purpose's first passes run
 /// before, so that the bits are those of the program by rows. With `before`, numbers that differed there keep
 /// columns of their own, so that an edit back and forth fits.

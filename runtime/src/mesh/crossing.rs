@@ -82,7 +82,7 @@ pub(crate) fn find(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Crossin
 pub(crate) struct UnflippedCells {
     pub(crate) cells: Vec<CrossedCell>,
     /// See [`Crossings::corners`].
-    corners: Vec<Vec<[f32; 8]>>,
+    pub(crate) corners: Vec<Vec<[f32; 8]>>,
     /// Where the cells of each brick begin, and the end.
     pub(crate) starts: Vec<usize>,
     /// Cells with a low face that is pinched by default: the brick and the cell, ascending.
@@ -331,7 +331,7 @@ pub(crate) fn flip(
 
 /// The crossed cell below a crossed cell of a brick along an axis; `None` at the lattice's end, or if the
 /// cell there is not crossed.
-fn below(
+pub(crate) fn below(
     bricks: &Bricks,
     starts: &[usize],
     cells: &[CrossedCell],

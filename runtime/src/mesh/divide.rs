@@ -21,11 +21,11 @@ use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
+use super::scope::DivisionScope;
 use super::stage::MeshStage;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
 use crate::progress::Progress;
 use crate::span::span;
-use crate::touched::Touched;
 
 /// The result of the division.
 pub(crate) struct BrickDivision<R> {
@@ -107,25 +107,25 @@ struct BoxChildren<R> {
 struct BrickDivider<'a, 'hook, F: Field> {
     field: &'a F,
     axes: &'a [Vec<f32>; 3],
-    /// The boxes that are looked at; all, if there are none.
-    touched: Option<&'a Touched<3>>,
+    /// The boxes that are looked at.
+    scope: DivisionScope<'a>,
     iso: f32,
     limit: usize,
     progress: &'a Progress<'hook>,
 }
 
-/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept. Of
-/// a lattice that is touched in parts, these parts alone are divided.
+/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept. What
+/// is out of the scope is not looked at.
 pub(crate) fn divide<F: Field>(
     field: &F,
     axes: [Vec<f32>; 3],
-    (options, touched): (&Options, Option<&Touched<3>>),
+    (options, scope): (&Options, DivisionScope<'_>),
     limit: usize,
     progress: &Progress<'_>,
 ) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {
     span!("divide");
     let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
-    let divider = BrickDivider { field, axes: &axes, touched, iso: options.iso, limit, progress };
+    let divider = BrickDivider { field, axes: &axes, scope, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
     // The search for thin parts wants the same boxes around each box, whatever the edge of bricks is: the
     // first has room for the largest brick.
@@ -153,7 +153,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     fn root(&self, size: usize, boxes: &mut BoxCounts) -> Result<BoxLevel<F::Region>, MeshError<F::Error>> {
         let bounds = box_of(self.axes, [0; 3], [size; 3]);
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
-        let ranges = self.ranges_of(&region, &[bounds], size)?;
+        let ranges = self.ranges_of(&region, (&[bounds], &[[0; 3]]), size)?;
         let level = BoxLevel { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
         if !self.may_cross(&region, ranges[0], ([0; 3], size), boxes) {
             return Ok(level);
@@ -242,23 +242,23 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         let first =
             |child: usize| [0, 1, 2].map(|axis| (2 * place[axis] as usize + (child >> axis & 1)) * size);
         let in_lattice = |child: usize| (0..3).all(|axis| first(child)[axis] + 1 < self.axes[axis].len());
-        let is_touched = |child: usize| self.touched.is_none_or(|touched| touched.has(first(child), size));
+        let is_looked_at = |child: usize| self.scope.has(first(child), size);
         let bounds = |child: usize| box_of(self.axes, first(child), first(child).map(|index| index + size));
         let mut boxes = [Box3::default(); MAX_PARTS];
-        let mut which = [0; MAX_PARTS];
+        let (mut which, mut firsts) = ([0; MAX_PARTS], [[0; 3]; MAX_PARTS]);
         let mut count = 0;
-        for child in (0..8).filter(|&child| in_lattice(child) && is_touched(child)) {
-            (boxes[count], which[count]) = (bounds(child), child);
+        for child in (0..8).filter(|&child| in_lattice(child) && is_looked_at(child)) {
+            (boxes[count], which[count], firsts[count]) = (bounds(child), child, first(child));
             count += 1;
         }
         if count == 0 {
             children.masks.push(0);
             return Ok(());
         }
-        let ranges = self.ranges_of(region, &boxes[..count], size)?;
+        let ranges = self.ranges_of(region, (&boxes[..count], &firsts[..count]), size)?;
         let (mut mask, mut kept) = (0_u8, 0);
         for n in 0..count {
-            if self.may_cross(region, ranges[n], (first(which[n]), size), &mut children.boxes) {
+            if self.may_cross(region, ranges[n], (firsts[n], size), &mut children.boxes) {
                 mask |= 1 << which[n];
                 boxes[kept] = boxes[n];
                 kept += 1;
@@ -274,16 +274,24 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         Ok(())
     }
 
-    /// Ranges of boxes of this size. Around what is touched, only those of bricks are computed: there are few
-    /// boxes on the way, and the largest have the most rows.
+    /// Ranges of boxes of this size, which begin at these cells. A box that the scope only passes through may
+    /// be anything.
     fn ranges_of(
         &self,
         region: &F::Region,
-        boxes: &[Box3],
+        (boxes, firsts): (&[Box3], &[[usize; 3]]),
         size: usize,
     ) -> Result<[[f32; 2]; MAX_PARTS], MeshError<F::Error>> {
-        let is_passed = self.touched.is_some_and(|touched| size > touched.edge());
-        if is_passed { Ok([ANYTHING; MAX_PARTS]) } else { self.ranges(region, boxes) }
+        let cells = self.axes.each_ref().map(|axis| axis.len() - 1);
+        let is_passed = |first: &[usize; 3]| self.scope.passes(*first, size, cells);
+        if firsts.iter().all(is_passed) {
+            return Ok([ANYTHING; MAX_PARTS]);
+        }
+        let mut ranges = self.ranges(region, boxes)?;
+        for (range, _) in ranges.iter_mut().zip(firsts).filter(|(_, first)| is_passed(first)) {
+            *range = ANYTHING;
+        }
+        Ok(ranges)
     }
 
     fn ranges(
@@ -459,7 +467,7 @@ mod tests {
     fn divided(cells: [usize; 3], limit: usize) -> Result<BrickDivision<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
-        divide(&Ball, axes, (&options, None), limit, &Progress::new(&mut |_| true, EACH))
+        divide(&Ball, axes, (&options, DivisionScope::Everything), limit, &Progress::new(&mut |_| true, EACH))
     }
 
     #[test]

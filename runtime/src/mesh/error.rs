@@ -65,6 +65,13 @@ pub enum MeshError<E: Error + 'static> {
         /// How many points there are.
         points: usize,
     },
+    /// Whether faces of a block of cells are flipped depends on cells further away than was looked at: a chain
+    /// of ambiguous faces leads there. It has to be asked again with a larger reach.
+    #[error("flipped faces depend on cells more than {reach} cells away from the block")]
+    Reach {
+        /// How far was looked, in cells.
+        reach: usize,
+    },
     /// More vertices than a u32 can number.
     #[error("the mesh would have {vertices} vertices, more than can be numbered in 32 bits")]
     TooManyVertices {
@@ -79,9 +86,10 @@ impl Classified for MeshError<EvalError> {
             Self::Iso { .. } | Self::Brick { .. } | Self::Pulls { .. } | Self::Width { .. } => {
                 ErrorKind::Argument
             }
-            Self::TooManyBricks { .. } | Self::Memory { .. } | Self::TooManyVertices { .. } => {
-                ErrorKind::Limit
-            }
+            Self::TooManyBricks { .. }
+            | Self::Memory { .. }
+            | Self::Reach { .. }
+            | Self::TooManyVertices { .. } => ErrorKind::Limit,
             Self::Field(error) => error.kind(),
             Self::Cancelled => ErrorKind::Cancelled,
         }

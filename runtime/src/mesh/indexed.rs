@@ -37,6 +37,22 @@ pub struct Mesh {
     pub attributes: Vec<Attribute>,
     /// Three indices of vertices each, counter-clockwise when seen from outside, in right-handed axes.
     pub triangles: Vec<[u32; 3]>,
+    /// The parts of a model that has some, in order: each a closed surface of its own, with its own vertices.
+    /// Empty for one solid.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub parts: Vec<MeshPart>,
+}
+
+/// A part of a mesh: its vertices and triangles follow those of the part before.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MeshPart {
+    /// Its name.
+    pub name: String,
+    /// How many vertices there are up to its last one.
+    pub vertices: usize,
+    /// How many triangles there are up to its last one.
+    pub triangles: usize,
 }
 
 impl Attribute {
@@ -64,6 +80,7 @@ impl Mesh {
             attributes: self.attributes.clone(),
             // A mirror turns every triangle around.
             triangles: self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
+            parts: self.parts.clone(),
         })
     }
 

@@ -169,6 +169,23 @@ impl Lattice {
         if grown == *self { Ok(grown) } else { grown.checked() }
     }
 
+    /// Some cells of this lattice: its corners have the coordinates that they have here, to the bit.
+    ///
+    /// # Errors
+    /// Cells that are not there, or none: [`LatticeError::Cells`].
+    pub fn part(&self, first: [usize; 3], cells: [usize; 3]) -> Result<Self, LatticeError> {
+        let mut part = self.clone();
+        for axis in 0..3 {
+            let end = first[axis].checked_add(cells[axis]);
+            if cells[axis] == 0 || end.is_none_or(|end| end > self.cells[axis]) {
+                return Err(LatticeError::Cells { axis, cells: cells[axis] });
+            }
+            part.first[axis] += first[axis] as i64;
+            part.cells[axis] = cells[axis];
+        }
+        Ok(part)
+    }
+
     /// The same lattice, if it keeps to the limits.
     fn checked(self) -> Result<Self, LatticeError> {
         for (axis, &cells) in self.cells.iter().enumerate() {

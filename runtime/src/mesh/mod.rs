@@ -36,9 +36,11 @@
 //! to the bit for every thread count and every brick size: cells are in Morton order, in which bricks of any
 //! power of two follow one after the other.
 
+mod block;
 mod brick;
 mod cell;
 mod check;
+mod components;
 mod crossing;
 mod divide;
 mod error;
@@ -48,9 +50,11 @@ mod lattice;
 pub(crate) mod local;
 mod measure;
 mod options;
+mod parts;
 mod pull;
 mod report;
 mod sample;
+mod scope;
 mod settle;
 mod stage;
 mod surface;
@@ -59,14 +63,18 @@ mod vertex;
 
 use jbt_ir::limits::MAX_BRICKS;
 
+pub use block::{BlockError, BlockWork, LatticeBlock, MeshBlock, VertexName, join_blocks};
 pub use check::{Defect, check_manifold, is_closed};
+pub use components::MeshComponent;
 pub use error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
 pub use field::{Field, FieldWork};
-pub use indexed::{Attribute, Mesh};
+pub use indexed::{Attribute, Mesh, MeshPart};
 pub use lattice::{Lattice, LatticeError};
 pub use options::Options;
+pub use parts::MeshPiece;
 pub use report::{MAX_NEAR, MeshReport, Sides, ThinReport};
 
+pub(crate) use block::{busy, extract as extract_block};
 #[cfg(feature = "export")]
 pub(crate) use surface::{area_vector, unit};
 
@@ -75,6 +83,7 @@ use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
 use divide::BrickDivision;
+use scope::DivisionScope;
 use vertex::batch::VertexSource;
 
 /// Meshes the surface `field = iso` over a lattice.
@@ -108,7 +117,8 @@ pub(crate) fn extract_hooked<F: Field>(
 ) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
     options.check()?;
     let progress = Progress::new(hook, EACH);
-    let division = divide::divide(field, lattice.axes(), (options, None), MAX_BRICKS, &progress)?;
+    let division =
+        divide::divide(field, lattice.axes(), (options, DivisionScope::Everything), MAX_BRICKS, &progress)?;
     let (mesh, mut report, crossings) = polygonize(field, &division, options, &progress)?;
     meshed(&report);
     if options.thin_parts {

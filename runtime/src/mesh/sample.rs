@@ -157,8 +157,12 @@ pub(crate) fn sample<F: Field>(
             for brick in first..bricks.len().min(first + group) {
                 let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
                 points.collect(bricks, brick, &rims[brick]);
-                let BrickPoints { x, y, z } = &*points;
-                field.field(&regions[brick], x, y, z, &mut values[mine]).map_err(MeshError::Field)?;
+                let BrickPoints { x, y, z, at_once } = points;
+                let values = &mut values[mine];
+                progress.paced(x.len(), at_once, |some| {
+                    let [x, y, z] = [&x[some.clone()], &y[some.clone()], &z[some.clone()]];
+                    field.field(&regions[brick], x, y, z, &mut values[some]).map_err(MeshError::Field)
+                })?;
             }
             progress.add(1.0 / total as f64).map_err(MeshError::from)
         },
@@ -206,6 +210,8 @@ struct BrickPoints {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
+    /// Points that take little time: see [`Progress::paced`].
+    at_once: usize,
 }
 
 impl BrickPoints {

@@ -65,6 +65,7 @@ pub(crate) fn finish<F: Field>(
         normals: vec![[0.0; 3]; count],
         attributes: attributes.into_iter().map(attribute).collect(),
         triangles: Vec::new(),
+        parts: Vec::new(),
     };
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
@@ -74,7 +75,7 @@ pub(crate) fn finish<F: Field>(
     let work = work.map_init(VertexBatch::default, |batch, (index, target)| {
         let first = index * group;
         let bricks = first..source.bricks.len().min(first + group);
-        let done = finish_group(source, &widths, bricks, target, batch).map_err(MeshError::Field)?;
+        let done = finish_group((source, progress), &widths, bricks, target, batch)?;
         progress.add(1.0 / total as f64)?;
         Ok::<_, MeshError<F::Error>>(done)
     });
@@ -100,12 +101,12 @@ fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<MeshTa
 }
 
 fn finish_group<F: Field>(
-    source: &VertexSource<'_, F>,
+    (source, progress): (&VertexSource<'_, F>, &Progress<'_>),
     widths: &[usize],
     bricks: Range<usize>,
     mut target: MeshTarget<'_>,
     batch: &mut VertexBatch,
-) -> Result<Done, F::Error> {
+) -> Result<Done, MeshError<F::Error>> {
     span!("vertices of some bricks");
     let starts = &source.crossings.vertices;
     let (first, mut done) = (starts[bricks.start], Done::default());
@@ -115,7 +116,8 @@ fn finish_group<F: Field>(
             continue;
         }
         batch.start(source, brick, range.len());
-        done = done.and(batch.evaluate(source, brick, widths.iter().sum())?);
+        progress.breathe()?;
+        done = done.and(batch.evaluate(source, brick, widths.iter().sum()).map_err(MeshError::Field)?);
         batch.write(&mut target, range, widths);
         done.doubtful.extend(batch.doubtful.iter().map(|&vertex| (starts[brick] + vertex) as u32));
     }

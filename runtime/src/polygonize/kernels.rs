@@ -3,7 +3,7 @@
 use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible, Range};
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::counter::Counters;
 use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
@@ -24,8 +24,7 @@ impl Kernels {
     /// Those of a compiled model.
     pub(crate) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
         let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
-        let [field, gradient, all] = queries.map(|query| Need::Answers(PointScope::Regions, query));
-        compiled.prepare(&[Need::Ranges, field, gradient, all])?;
+        compiled.prepare(&Task::Mesh.needs())?;
         let [field, gradient, all] = queries.map(|query| compiled.regional(query));
         Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all? })
     }

@@ -7,6 +7,7 @@
 //!               a row goes if its high end is below best, or equal and behind the row that has it
 //! intersection: the same of the negative ranges
 //! smooth ones:  a row goes if it is the smaller side of its step by the width, or if a later row is the larger one by it
+//! difference:   what is subtracted goes where it cuts nothing, and what is left of where that is cut away   (limit)
 //! ```
 //!
 //! A row that goes is beaten at every point by a row that stays, or equals one that comes before it. So no
@@ -19,11 +20,13 @@
 use std::sync::OnceLock;
 
 use jbt_ir::{Entity as _, RowFunction, Selection, Table, Tables};
-use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest};
+use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest, StepFields};
 use jbt_model::combine::Extreme;
 
 use super::decide::{MOST_ALONE, firsts};
+use super::limit::{DifferenceLimit, cut};
 use super::ranges::ProbeRanges;
+use super::winners::WinnerTree;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
 use crate::compiler::Compiler;
 use crate::error::EvalError;
@@ -37,7 +40,7 @@ const FEWEST_IN_BOX: usize = 3;
 /// The most contests of a model that have programs: those of the most rows.
 const MOST_CONTESTS: usize = 24;
 /// Lanes of a run: their planes stay in the nearest caches.
-const MOST_LANES: usize = 1024;
+pub(super) const MOST_LANES: usize = 1024;
 
 /// The contests of a model, with what runs their rows.
 pub(super) struct Contests {
@@ -50,10 +53,14 @@ struct ContestRows {
     contest: RowContest,
     /// By group: made when it is first asked for. `None` if no ranges of the rows can be had.
     groups: Vec<OnceLock<Option<RowRanges>>>,
+    /// Of the other side of a difference.
+    other: OnceLock<Option<RowRanges>>,
+    /// By group: made after many questions about small parts.
+    trees: Vec<OnceLock<Option<WinnerTree>>>,
 }
 
 /// What gives the ranges of the rows of a table.
-struct RowRanges {
+pub(super) struct RowRanges {
     kernel: BoundKernel,
     /// Numbers of the rows, plane by plane.
     numbers: Vec<Vec<f32>>,
@@ -63,15 +70,15 @@ struct RowRanges {
 
 /// A row in a box.
 #[derive(Clone, Copy)]
-struct RowInBox {
-    row: u32,
+pub(super) struct RowInBox {
+    pub(super) row: u32,
     /// Its place among all active rows of the selection.
-    place: u32,
+    pub(super) place: u32,
     /// The position of the row that owns it.
-    owner: u32,
-    part: u8,
+    pub(super) owner: u32,
+    pub(super) part: u8,
     /// Whether it is no row that may go.
-    stays: bool,
+    pub(super) stays: bool,
 }
 
 impl Contests {
@@ -81,7 +88,10 @@ impl Contests {
             count(group) <= MOST_ALONE && info.decisions.iter().any(|it| it.table == group.table)
         };
         let rows = |contest: &RowContest| -> usize {
-            contest.groups.iter().filter(|group| group.rows && !is_tried(group)).map(count).sum()
+            // To the range program a side of a difference is an operator like any other.
+            let counts =
+                |group: &&ContestGroup| group.rows && (contest.difference.is_some() || !is_tried(group));
+            contest.groups.iter().filter(counts).map(count).sum()
         };
         let mut worth: Vec<&RowContest> =
             info.contests.iter().filter(|contest| rows(contest) >= FEWEST_ROWS).collect();
@@ -90,6 +100,8 @@ impl Contests {
         let with_rows = |contest: &RowContest| ContestRows {
             groups: contest.groups.iter().map(|_| OnceLock::new()).collect(),
             contest: contest.clone(),
+            other: OnceLock::new(),
+            trees: contest.groups.iter().map(|_| OnceLock::new()).collect(),
         };
         Self { compiler: compiler.clone(), all: worth.into_iter().map(with_rows).collect() }
     }
@@ -104,12 +116,38 @@ impl Contests {
         self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.rows && group.table == table)
     }
 
+    /// Of all rows of a table of many that meet in a contest, the positions of those that may win in a box,
+    /// ascending, by a tree; and the ranges that it took. `None` if there is no tree, or too many may win.
+    pub(super) fn winners(
+        &self,
+        lowered: &BoundKernel,
+        table: Table,
+        bounds: &Box3,
+    ) -> Result<(Option<Vec<u32>>, u64), EvalError> {
+        let (all, nothing) = (lowered.all(), (None, 0));
+        // The rows of several owners are several contests.
+        if all.starts(table).len() != 2 {
+            return Ok(nothing);
+        }
+        for ContestRows { contest, trees, .. } in &self.all {
+            let ContestKind::All(start) = contest.kind else { continue };
+            let place = contest.groups.iter().position(|group| group.rows && group.table == table);
+            let Some(place) = place else { continue };
+            let new = || WinnerTree::new(&self.compiler, lowered, &contest.groups[place], all.active(table));
+            return match trees[place].get_or_init(new) {
+                Some(tree) => tree.winners(bounds, (contest.extreme, start)),
+                None => Ok(nothing),
+            };
+        }
+        Ok(nothing)
+    }
+
     /// Clears the masks of rows that win nowhere, for each box. `lowered` is the range program, whose rows
     /// the selection selects; `probes` are the ranges of its probes, if they are known. Returns how many
     /// ranges of distances that took.
     pub(super) fn leave_out(
         &self,
-        lowered: &BoundKernel,
+        (lowered, info): (&BoundKernel, &PruneInfo),
         (selection, boxes): (&Selection, &[Box3]),
         probes: Option<ProbeRanges<'_>>,
         masks: &mut [u8],
@@ -119,10 +157,10 @@ impl Contests {
             return Ok(evaluations);
         }
         let firsts = firsts(selection);
-        for ContestRows { contest, groups } in &self.all {
+        for ContestRows { contest, groups, other, .. } in &self.all {
             let operands = |group: &&ContestGroup| group.rows;
             let rows = |group: &ContestGroup| selection.active(group.table).len();
-            if contest.groups.iter().filter(operands).map(rows).sum::<usize>() < FEWEST_IN_BOX {
+            if contest.groups.iter().filter(operands).map(rows).sum::<usize>() < fewest_in_box(contest) {
                 continue;
             }
             let enter = |group| entries(group, selection, &firsts, masks);
@@ -134,7 +172,7 @@ impl Contests {
                     continue;
                 }
                 let made = groups[index].get_or_init(|| RowRanges::new(&self.compiler, lowered, group));
-                let mut meet = |entry, range| round.meet(contest.extreme, index, entry, range);
+                let mut meet = |entry, range| round.meet((contest, info.iso2), index, entry, range);
                 match made {
                     Some(ranges) => {
                         evaluations += ranges.distances * entered.len() as u64;
@@ -143,7 +181,22 @@ impl Contests {
                     None => entered.iter().for_each(|&entry| meet(entry, ANYTHING)),
                 }
             }
-            round.finish(contest, (selection, lowered.tables()), probes, masks);
+            let limit = match contest.difference {
+                None => None,
+                Some(difference) => {
+                    let made = || {
+                        let made =
+                            other.get_or_init(|| RowRanges::new(&self.compiler, lowered, &difference.other));
+                        made.as_ref()
+                    };
+                    let wanted: Vec<RowInBox> = entered.concat();
+                    let mut limit =
+                        DifferenceLimit::new((contest, difference, info.iso2), selection, &firsts);
+                    evaluations += limit.find((&wanted, boxes), probes, made)?;
+                    Some(limit)
+                }
+            };
+            round.finish((contest, info.iso2), (selection, lowered.tables()), (probes, limit), masks);
         }
         Ok(evaluations)
     }
@@ -175,6 +228,11 @@ fn entries(group: &ContestGroup, selection: &Selection, firsts: &[usize], masks:
     entered
 }
 
+/// Fewer rows in a box are not looked at. A single row may be one that a difference does without.
+fn fewest_in_box(contest: &RowContest) -> usize {
+    if contest.difference.is_some() { 1 } else { FEWEST_IN_BOX }
+}
+
 /// Leaves boxes with few operands alone.
 fn leave_few(contest: &RowContest, entered: &mut [Vec<RowInBox>]) {
     let mut counts = [0; MAX_PARTS];
@@ -182,7 +240,7 @@ fn leave_few(contest: &RowContest, entered: &mut [Vec<RowInBox>]) {
         entered.iter().for_each(|entry| counts[entry.part as usize] += 1);
     }
     for entered in entered {
-        entered.retain(|entry| counts[entry.part as usize] >= FEWEST_IN_BOX);
+        entered.retain(|entry| counts[entry.part as usize] >= fewest_in_box(contest));
     }
 }
 
@@ -194,17 +252,30 @@ struct ContestRound {
 
 /// A row in a box, with its group and its range: that of the negative field, where the smallest wins.
 #[derive(Clone, Copy)]
-struct MetRow {
-    entry: RowInBox,
+pub(super) struct MetRow {
+    pub(super) entry: RowInBox,
     group: usize,
-    low: f32,
-    high: f32,
+    pub(super) low: f32,
+    pub(super) high: f32,
 }
 
 impl ContestRound {
     /// An operand with its range comes to the contest.
-    fn meet(&mut self, extreme: Extreme, group: usize, entry: RowInBox, [low, high]: Range) {
-        let [low, high] = match extreme {
+    fn meet(
+        &mut self,
+        (contest, iso2): (&RowContest, f32),
+        group: usize,
+        entry: RowInBox,
+        [low, high]: Range,
+    ) {
+        let [low, high] = match contest.kind {
+            // The first group is what is left of.
+            ContestKind::Steps(_, _, StepFields::Complements) if group > 0 => {
+                [cut(iso2, high), cut(iso2, low)]
+            }
+            ContestKind::Steps(..) | ContestKind::All(_) => [low, high],
+        };
+        let [low, high] = match contest.extreme {
             Extreme::Largest => [low, high],
             Extreme::Smallest => [-high, -low],
         };
@@ -214,9 +285,9 @@ impl ContestRound {
     /// Clears the masks of rows that win nowhere.
     fn finish(
         mut self,
-        contest: &RowContest,
+        (contest, iso2): (&RowContest, f32),
         (selection, tables): (&Selection, &Tables),
-        probes: Option<ProbeRanges<'_>>,
+        (probes, limit): (Option<ProbeRanges<'_>>, Option<DifferenceLimit<'_>>),
         masks: &mut [u8],
     ) {
         // In a box, those of one owner in the order of operands.
@@ -240,11 +311,17 @@ impl ContestRound {
                         Extreme::Smallest => -high,
                     });
                     beaten(rows, start, below).for_each(&mut go);
+                    limit.iter().flat_map(|limit| limit.beyond(rows)).for_each(&mut go);
                 }
-                ContestKind::Steps(table, column) => {
+                ContestKind::Steps(table, column, fields) => {
                     let row = selection.active(table)[owner as usize];
                     let width = tables.tables[table].row(row as usize)[column];
-                    passed_over(rows, width.into()).for_each(&mut go);
+                    // A complement that is not below this may be that of nothing, which gives no attributes.
+                    let most = match fields {
+                        StepFields::Plain => f32::INFINITY,
+                        StepFields::Complements => iso2,
+                    };
+                    passed_over(rows, width.into(), most).for_each(&mut go);
                 }
             }
         }
@@ -278,7 +355,9 @@ fn beaten(rows: &[MetRow], start: Option<f32>, below: f32) -> impl Iterator<Item
 /// passed over    a row that is below the largest low end before it by `width`
 /// begins anew    a row that is above the largest high end before it by twice `width`: all before it go
 /// ```
-fn passed_over(rows: &[MetRow], width: f64) -> impl Iterator<Item = &MetRow> {
+///
+/// Of complements, only one that is below `most` takes the attributes with it: its negative is above `-most`.
+fn passed_over(rows: &[MetRow], width: f64, most: f32) -> impl Iterator<Item = &MetRow> {
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     let mut first = 0;
     let mut passed = Vec::with_capacity(rows.len());
@@ -286,7 +365,7 @@ fn passed_over(rows: &[MetRow], width: f64) -> impl Iterator<Item = &MetRow> {
         passed.push(f64::from(met.high) + width <= low);
         // Each step may round by half a unit.
         let rounding = f64::from(f32::EPSILON) * (index + 1) as f64 * (high.abs() + 2.0 * width);
-        if index > 0 && f64::from(met.low) >= high + 2.0 * width + rounding {
+        if index > 0 && met.low > -most && f64::from(met.low) >= high + 2.0 * width + rounding {
             first = index;
         }
         low = low.max(met.low.into());
@@ -305,8 +384,13 @@ impl RowRanges {
         Some(Self { kernel: compiler.bind(&kernel, Tables::default()), numbers, distances })
     }
 
+    /// The distances that the function computes.
+    pub(super) fn distances(&self) -> u64 {
+        self.distances
+    }
+
     /// The range of each row in its box.
-    fn find(
+    pub(super) fn find(
         &self,
         entered: &[RowInBox],
         boxes: &[Box3],
@@ -338,7 +422,7 @@ impl RowRanges {
 }
 
 /// Fills a plane; lanes behind the last number repeat it.
-fn fill(plane: &mut Vec<f32>, lanes: usize, numbers: impl Iterator<Item = f32>) {
+pub(super) fn fill(plane: &mut Vec<f32>, lanes: usize, numbers: impl Iterator<Item = f32>) {
     plane.clear();
     plane.extend(numbers);
     plane.resize(lanes, plane.last().copied().unwrap_or(0.0));

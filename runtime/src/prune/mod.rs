@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
-//! region:  of all rows, those whose supports reach one box; if small boxes are asked for, by a tree   (root, tree)
+//! region:  of all rows, those whose supports reach one box; if small boxes are asked for, by a tree   (root, tree);
+//!          of rows that meet in a contest, those that may win, by another                           (winners)
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
 //!          the rule of the operator says which of the zero rows may go                        (rule)
 //!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
@@ -24,12 +25,14 @@ mod contest;
 mod cull;
 mod decide;
 mod edit;
+mod limit;
 pub(crate) mod program;
 mod ranges;
 mod root;
 mod rule;
 mod survey;
 mod tree;
+mod winners;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -150,6 +153,11 @@ impl Pruner {
         self.compiled.updated(tree).pruner()
     }
 
+    /// What it runs.
+    pub(crate) fn program(&self) -> &RangeProgram {
+        &self.program
+    }
+
     /// The model.
     pub(crate) fn compiled(&self) -> &Compiled {
         &self.compiled
@@ -241,8 +249,8 @@ impl Pruner {
         if let Some(probes) = probes {
             decide::leave_out(&self.program.info, probes, selection, &mut masks);
         }
-        let RangeProgram { bound, contests, .. } = &*self.program;
-        let taken = contests.leave_out(bound, (selection, boxes), probes, &mut masks)?;
+        let RangeProgram { bound, contests, info, .. } = &*self.program;
+        let taken = contests.leave_out((bound, info), (selection, boxes), probes, &mut masks)?;
         self.counts.primitives.fetch_add(taken, Ordering::Relaxed);
         Ok(masks)
     }
@@ -324,15 +332,23 @@ impl Divisible for Pruner {
         let mut region = self.everywhere();
         if region.rows() > MAX_RANGED_ROWS {
             // Supports first: they tell of most rows, and ranges are computed of few rows only.
-            let selection = self.program.trees.reaching(self.program.bounded_rows(), &bounds);
+            let RangeProgram { bound, contests, trees, .. } = &*self.program;
+            let mut winners = |table| {
+                let (positions, taken) = contests.winners(bound, table, &bounds)?;
+                self.counts.primitives.fetch_add(taken, Ordering::Relaxed);
+                Ok(positions)
+            };
+            let selection = trees.reaching(self.program.bounded_rows(), &bounds, &mut winners)?;
             region = Region { bounds, selection: Arc::new(selection) };
-            if region.rows() > MAX_RANGED_ROWS && self.program.contests.is_empty() {
+            if region.rows() > MAX_RANGED_ROWS && contests.is_empty() {
                 return Ok(region);
             }
         }
         let mut parts = Vec::with_capacity(1);
         self.narrow(&region, &[bounds], &mut parts)?;
-        Ok(parts.pop().expect("one box has one region"))
+        let region = parts.pop().expect("one box has one region");
+        self.program.trees.note(self.program.bound.all().len(), region.rows());
+        Ok(region)
     }
 
     fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {

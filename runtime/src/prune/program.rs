@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use jbt_ir::{Table, Tables};
+use jbt_ir::{Function, Table, Tables};
 use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneInfo};
 
 use super::contest::Contests;
@@ -47,6 +47,11 @@ impl RangeProgram {
     /// What is known about the rows.
     pub(crate) fn info(&self) -> &PruneInfo {
         &self.info
+    }
+
+    /// The range function as it was lowered.
+    pub(crate) fn lowered(&self) -> &Function {
+        &self.bound.kernel.lowered
     }
 
     /// The numbers.

@@ -9,15 +9,18 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jbt_ir::{Entity as _, Selection, Table};
-use jbt_lower::prune_info::{PruneInfo, SupportSpace};
+use jbt_lower::prune_info::{PruneInfo, Rule, SupportSpace};
 
 use super::cull::{Boxes, RowSupports};
 use super::rule;
 use super::tree::RowTree;
 use crate::boxes::Box3;
+use crate::error::EvalError;
 
 /// Tables of fewer rows have no tree.
 const FEWEST_ROWS: usize = 1024;
+/// So few rows that reach a part are looked at as they are. Of more, a contest may leave most out.
+const FEW: usize = 4096;
 /// A part is small if at most one of so many rows reaches it.
 const SMALL: usize = 16;
 /// After so many passes for small parts a tree is made. Of a million rows it takes as long as 65 passes
@@ -58,23 +61,53 @@ impl RowTrees {
         Self { trees: (0..tables).map(|_| OnceLock::new()).collect(), passes: AtomicUsize::new(0) }
     }
 
-    /// The rows whose supports in the world reach a box, and what rules keep of the others.
-    pub(super) fn reaching(&self, rows: BoundedRows<'_>, bounds: &Box3) -> Selection {
+    /// A question about a part has been answered with so many of all rows.
+    pub(super) fn note(&self, all: usize, found: usize) {
+        if found <= all / SMALL && self.passes.load(Ordering::Relaxed) < PASSES {
+            self.passes.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// The rows whose supports in the world reach a box, and what rules keep of the others. `winners` are the
+    /// positions of those of a table that may win a contest, if a tree tells.
+    pub(super) fn reaching(
+        &self,
+        rows: BoundedRows<'_>,
+        bounds: &Box3,
+        winners: &mut dyn FnMut(Table) -> Result<Option<Vec<u32>>, EvalError>,
+    ) -> Result<Selection, EvalError> {
         let all = rows.all;
         let boxes = Boxes::new(&[*bounds]);
         let pays = self.passes.load(Ordering::Relaxed) >= PASSES && !boxes.are_far();
         let reaches = |supports: &RowSupports, active: &[u32], position: u32| {
             supports.reach(active[position as usize], &boxes) != 0
         };
-        let listed = |table: Table| {
-            let (supports, active) = (rows.in_world(table)?, all.active(table));
+        let mut listed = |table: Table| {
+            let Some(supports) = rows.in_world(table) else { return Ok(None) };
+            let active = all.active(table);
             if !pays || active.len() < FEWEST_ROWS {
-                return None;
+                return Ok(None);
             }
+            let may_lose = match rows.info.tables[table].rule {
+                Rule::Neutral | Rule::KeepOne => true,
+                // Here a row that is not listed would count as zero, and leave the others out.
+                Rule::Never | Rule::OnlyZero => false,
+            };
             let tree = self.trees[table.index()].get_or_init(|| RowTree::new(supports, active));
-            tree.reached(bounds, |position| reaches(supports, active, position))
+            let most = active.len() / 8;
+            let reached = |most| tree.reached(bounds, most, |position| reaches(supports, active, position));
+            if let Some(positions) = reached(most.min(FEW)) {
+                return Ok(Some(positions));
+            }
+            if let Some(mut positions) = if may_lose { winners(table)? } else { None } {
+                positions.retain(|&position| reaches(supports, active, position));
+                return Ok(Some(positions));
+            }
+            Ok(reached(most))
         };
-        let lists: Vec<Option<Vec<u32>>> = (0..all.tables()).map(|table| listed(Table::new(table))).collect();
+        let lists: Result<Vec<Option<Vec<u32>>>, EvalError> =
+            (0..all.tables()).map(|table| listed(Table::new(table))).collect();
+        let lists = lists?;
         let selection = all.picked(|table, owned, stay| {
             let Some(supports) = rows.in_world(table) else {
                 stay.extend(owned);
@@ -93,10 +126,7 @@ impl RowTrees {
             }
             rule::complete(rows.info.tables[table].rule, owned, before, stay);
         });
-        if !pays && selection.len() <= all.len() / SMALL {
-            self.passes.fetch_add(1, Ordering::Relaxed);
-        }
-        selection
+        Ok(selection)
     }
 
     /// The trees for a program with the same rows, some of which have other supports.

@@ -97,9 +97,13 @@ impl RowTree {
     }
 
     /// The positions of the rows that reach a place, ascending: of those whose box meets `bounds` the ones
-    /// that `reaches` says. `None` if they are so many that a pass over all rows is as fast.
-    pub(super) fn reached(&self, bounds: &Box3, reaches: impl Fn(u32) -> bool) -> Option<Vec<u32>> {
-        let most = self.order.len() / 8;
+    /// that `reaches` says. `None` if there are more than `most`.
+    pub(super) fn reached(
+        &self,
+        bounds: &Box3,
+        most: usize,
+        reaches: impl Fn(u32) -> bool,
+    ) -> Option<Vec<u32>> {
         let top = self.levels.len() - 1;
         let mut open: Vec<(usize, usize)> = (0..self.levels[top].len()).map(|index| (top, index)).collect();
         let mut found = Vec::new();
@@ -183,7 +187,7 @@ mod tests {
                 let reaches = |position: u32| rows.reach(active[position as usize], &boxes) != 0;
                 let expected: Vec<u32> =
                     (0..active.len() as u32).filter(|&position| reaches(position)).collect();
-                match tree.reached(&bounds, reaches) {
+                match tree.reached(&bounds, active.len() / 8, reaches) {
                     Some(found) => {
                         narrow += 1;
                         assert_eq!(found, expected, "{bounds:?}");

@@ -130,6 +130,7 @@ fn meshed(
             | MeshError::Width { .. }
             | MeshError::TooManyBricks { .. }
             | MeshError::Memory { .. }
+            | MeshError::Reach { .. }
             | MeshError::TooManyVertices { .. },
         ) => Ok(None),
     }

@@ -104,6 +104,9 @@ impl Render {
         hook: Hook<'_>,
     ) -> Result<Rendered, RenderError> {
         self.check(tree)?;
+        if !hook(0.0) {
+            return Err(RenderError::Cancelled);
+        }
         let start = Instant::now();
         let renderer = Renderer::new(compiler, tree)?;
         let compile_time = start.elapsed();
@@ -172,8 +175,12 @@ fn expose(frame: &Frame<'_>, film: &mut [Gathered], telling: &mut Telling<'_>) -
     let places = TileArea::all(frame.render.size, frame.render.antialias);
     let mut all = Tile::default();
     for (done, some) in places.chunks(STRIDE).enumerate() {
-        let tiles: Vec<Tile> =
-            some.par_iter().map(|place| tile::expose(frame, place)).collect::<Result<_, _>>()?;
+        let breath = telling.breath();
+        let expose = |place: &TileArea| {
+            breath.take()?;
+            tile::expose(frame, place)
+        };
+        let tiles: Vec<Tile> = some.par_iter().map(expose).collect::<Result<_, _>>()?;
         for (place, tile) in some.iter().zip(tiles) {
             for (row, pixels) in (place.y..).zip(tile.pixels.chunks(place.width as usize)) {
                 film[row as usize * width + place.x as usize..][..pixels.len()].copy_from_slice(pixels);

@@ -5,7 +5,7 @@
 //!
 //! a tile:  for each triangle of its bin, in order            edge 1 >= 0 ┐
 //!            for each sample in the box around it            edge 2 >= 0 ├ and nearer than what is there
-//!              three edges and the nearness: a x + b y + c   edge 3 >= 0 ┘          (RasterTile)
+//!              three edges and the nearness: a x + b y + c   edge 3 >= 0 ┘          (MeshTile)
 //! ```
 //!
 //! Through an eye at 0, a sample looks along s = (x, y, 1). The plane of the eye and the edge from a to b has
@@ -60,7 +60,7 @@ pub struct MeshRaster<'a> {
 }
 
 /// The first triangles at the samples of a tile, row by row.
-pub struct RasterTile {
+pub struct MeshTile {
     area: TileArea,
     parts: u32,
     stride: usize,
@@ -188,7 +188,7 @@ impl<'a> MeshRaster<'a> {
 
     /// The first triangles at all samples of a tile, by the tile's number; a pixel has `parts` times as many
     /// samples in each direction.
-    pub fn tile(&self, number: usize, area: &TileArea, parts: u32) -> RasterTile {
+    pub fn tile(&self, number: usize, area: &TileArea, parts: u32) -> MeshTile {
         let [width, height] = [area.width, area.height].map(|side| (side * parts) as usize);
         let stride = width.next_multiple_of(WIDE);
         let farthest = if self.camera.orthographic { f32::NEG_INFINITY } else { 0.0 };
@@ -199,7 +199,7 @@ impl<'a> MeshRaster<'a> {
         let patches: Vec<Patch> = members.filter_map(|&number| self.patch(number, area, parts)).collect();
         fill(&patches, stride / WIDE, &mut near, &mut triangle);
         let (near, triangle) = (near.into_flattened(), triangle.into_flattened());
-        RasterTile { area: *area, parts, stride, near, triangle }
+        MeshTile { area: *area, parts, stride, near, triangle }
     }
 
     /// A triangle in the samples of a tile.
@@ -230,7 +230,7 @@ impl<'a> MeshRaster<'a> {
     }
 
     /// Where the ray of a sample meets the mesh, if it does.
-    pub fn meeting(&self, tile: &RasterTile, [column, row]: [u32; 2]) -> Option<MeshMeeting> {
+    pub fn meeting(&self, tile: &MeshTile, [column, row]: [u32; 2]) -> Option<MeshMeeting> {
         let index = row as usize * tile.stride + column as usize;
         let (triangle, near) = (tile.triangle[index], f64::from(tile.near[index]));
         if triangle == NONE {
@@ -286,8 +286,8 @@ mod tests {
 
     const SIZE: [u32; 2] = [70, 50];
 
-    /// The nearest outer side of a triangle on a ray and its distance, by trying all of them, after Möller and
-    /// Trumbore (1997). `margin` is how far inside of a triangle a ray has to be.
+    /// The nearest outer side of a triangle on a ray and its distance, by trying all of them, after Möller
+    /// and Trumbore (1997). `margin` is how far inside of a triangle a ray has to be.
     fn nearest(mesh: &Mesh, origin: Vector, direction: Vector, margin: f64) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f64)> = None;
         for (number, triangle) in mesh.triangles.iter().enumerate() {

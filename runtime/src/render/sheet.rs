@@ -107,10 +107,13 @@ fn of_tiles<T: Send>(
     let mut all = Vec::with_capacity(tiles.len());
     for (index, some) in tiles.chunks(STRIDE).enumerate() {
         let first = index * STRIDE;
-        let made: Vec<T> = (first..first + some.len())
-            .into_par_iter()
-            .map(|tile| work(tile, &tiles[tile]))
-            .collect::<Result<_, _>>()?;
+        let breath = telling.breath();
+        let work = |tile: usize| {
+            breath.take()?;
+            work(tile, &tiles[tile])
+        };
+        let tiles_now = (first..first + some.len()).into_par_iter();
+        let made: Vec<T> = tiles_now.map(work).collect::<Result<_, _>>()?;
         all.extend(made);
         if !telling.tell(all.len() as f32 / tiles.len() as f32) {
             return Err(RenderError::Cancelled);

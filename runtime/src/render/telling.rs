@@ -1,7 +1,10 @@
 //! How far a picture is, told stage by stage.
 
+use std::sync::{Mutex, PoisonError};
+
 use super::error::RenderError;
 use crate::job::Hook;
+use crate::progress::Pulse;
 
 /// A hook that hears ascending parts of the work, of one stage after the other.
 pub struct Telling<'h> {
@@ -29,6 +32,11 @@ impl<'h> Telling<'h> {
         self.span = [self.last, end];
     }
 
+    /// What threads take between tiles.
+    pub fn breath(&mut self) -> Breath<'_, 'h> {
+        Breath { telling: Mutex::new(self), pulse: Pulse::new() }
+    }
+
     /// Tells how far the stage is, from 0 to 1. Whether to go on.
     pub fn tell(&mut self, part: f32) -> bool {
         let [begin, end] = self.span;
@@ -38,5 +46,27 @@ impl<'h> Telling<'h> {
             self.alive = (self.hook)(part);
         }
         self.alive
+    }
+}
+
+/// Asks the hook, on behalf of threads that work on a stage.
+pub struct Breath<'t, 'h> {
+    telling: Mutex<&'t mut Telling<'h>>,
+    pulse: Pulse,
+}
+
+impl Breath<'_, '_> {
+    /// Asks whether to go on, if nobody has done so for a while.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`].
+    pub fn take(&self) -> Result<(), RenderError> {
+        let is_due = self.pulse.is_due();
+        let mut telling = self.telling.lock().unwrap_or_else(PoisonError::into_inner);
+        if is_due && telling.alive {
+            let last = telling.last;
+            telling.alive = (telling.hook)(last);
+        }
+        if telling.alive { Ok(()) } else { Err(RenderError::Cancelled) }
     }
 }

@@ -28,7 +28,7 @@ use jbt_model::query::Query;
 
 use crate::boxes::Box3;
 use crate::buffer::Layout;
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
@@ -36,6 +36,7 @@ use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::Lattice;
+use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
 
 /// Which blocks of a lattice are sampled.
@@ -91,6 +92,12 @@ pub enum SampleError {
     Cancelled,
 }
 
+impl From<Cancelled> for SampleError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
 impl Classified for SampleError {
     fn kind(&self) -> ErrorKind {
         match self {
@@ -129,12 +136,13 @@ impl Sampler {
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
         let is_formula = |kind: &NodeKind| matches!(kind, NodeKind::Expression(_));
-        compiled.prepare(&[Need::Answers(PointScope::Regions, query), Need::Ranges])?;
-        Ok(Self {
-            evaluator: compiled.regional(query)?,
-            pruner: compiled.pruner()?,
-            formulas: compiled.tree().nodes().iter().any(|node| is_formula(&node.kind)),
-        })
+        Self::with(compiled, query, compiled.tree().nodes().iter().any(|node| is_formula(&node.kind)))
+    }
+
+    /// A sampler of a model that has formulas or has none.
+    pub(crate) fn with(compiled: &Compiled, query: Query, formulas: bool) -> Result<Self, CompileError> {
+        compiled.prepare(&Task::Samples(query).needs())?;
+        Ok(Self { evaluator: compiled.regional(query)?, pruner: compiled.pruner()?, formulas })
     }
 
     /// What answers.
@@ -209,26 +217,31 @@ impl Sampler {
         hook: Hook<'_>,
         take: &mut dyn FnMut(Block),
     ) -> Result<(), SampleError> {
-        if !hook(0.0) {
-            return Err(SampleError::Cancelled);
-        }
+        let progress = Progress::new(hook, SOME);
+        progress.check().map_err(SampleError::from)?;
         let axes = lattice.axes();
         let all: Indices = lattice.points().map(|points| [0, points as u32]);
-        let decide = |cell: &Cell<'_, Pruner>, indices: &Indices| self.decide(&axes, wanted, cell, indices);
+        // What has been told to stop has nothing more to divide.
+        let decide = |cell: &Cell<'_, Pruner>, indices: &Indices| match progress.check() {
+            Ok(()) => self.decide(&axes, wanted, cell, indices),
+            Err(Cancelled) => Ok(Decision::Stop),
+        };
         let division = divide(&self.pruner, box_of(&axes, &all), all, &Limits::default(), &decide)?;
         let leaves: Vec<(Indices, &Region)> =
             division.leaves().map(|(node, region)| (node.data, region)).collect();
-        for (done, some) in leaves.chunks(STRIDE).enumerate() {
-            let sample = |(indices, region): &(Indices, &Region)| self.block(&axes, *indices, region);
-            let blocks: Vec<Block> =
-                some.par_iter().map(sample).collect::<Result<_, _>>().map_err(DivideError::Field)?;
+        progress.check()?;
+        let share = 1.0 / leaves.len() as f64;
+        for some in leaves.chunks(STRIDE) {
+            let sample = |at_once: &mut usize, (indices, region): &(Indices, &Region)| {
+                let block = self.block(&axes, *indices, region, (&progress, at_once))?;
+                progress.add(share)?;
+                Ok::<_, SampleError>(block)
+            };
+            let blocks = some.par_iter().map_init(|| BLOCK.pow(3), sample);
+            let blocks: Vec<Block> = blocks.collect::<Result<_, _>>()?;
             blocks.into_iter().for_each(&mut *take);
-            let fraction = ((done + 1) * STRIDE).min(leaves.len()) as f32 / leaves.len() as f32;
-            if !hook(fraction) {
-                return Err(SampleError::Cancelled);
-            }
         }
-        Ok(())
+        Ok(progress.finish()?)
     }
 
     fn decide(
@@ -260,7 +273,13 @@ impl Sampler {
         !self.formulas && self.evaluator.evaluations_in(region) == 0
     }
 
-    fn block(&self, axes: &[Vec<f32>; 3], indices: Indices, region: &Region) -> Result<Block, EvalError> {
+    fn block(
+        &self,
+        axes: &[Vec<f32>; 3],
+        indices: Indices,
+        region: &Region,
+        (progress, at_once): (&Progress<'_>, &mut usize),
+    ) -> Result<Block, SampleError> {
         let axis = |axis: usize| &axes[axis][indices[axis][0] as usize..indices[axis][1] as usize];
         let [xs, ys, zs] = [axis(0), axis(1), axis(2)];
         let [xs, ys, zs] =
@@ -276,8 +295,13 @@ impl Sampler {
             z.resize(x.len(), at_z);
         }
         let mut planes = vec![vec![0.0; count]; self.layout().names().len()];
-        let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-        self.evaluator.eval_region(region, [&x, &y, &z], &mut answers)?;
+        progress.paced(count, at_once, |some| {
+            let points = [&x[some.clone()], &y[some.clone()], &z[some.clone()]];
+            let mut answers: Vec<&mut [f32]> =
+                planes.iter_mut().map(|plane| &mut plane[some.clone()]).collect();
+            let evaluated = self.evaluator.eval_region(region, points, &mut answers);
+            evaluated.map_err(|error| SampleError::Divide(DivideError::Field(error)))
+        })?;
         Ok(Block::new(indices, planes))
     }
 }

@@ -4,9 +4,9 @@
 //! root ─ nodes of 4096^3 ─ nodes of 128^3 ─ leaves of 8^3 points       a mask says which points are active
 //! ```
 //!
-//! A point is active where the field is not 0, and only active values are in the file. The field is the grid
-//! `density`, a fog; three planes of one name are a grid of vectors, as `color` and `gradient`; every other plane
-//! is a grid of its own name.
+//! A point is active where the field is not 0, and only active values are in the file. The field is the
+//! grid `density`, a fog; three planes of one name are a grid of vectors, as `color` and `gradient`; every
+//! other plane is a grid of its own name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -222,8 +222,8 @@ fn offset([x, y, z]: [u32; 3], side: u32) -> usize {
     part(x) << (2 * side) | part(y) << side | part(z)
 }
 
-/// A node with children at these places: their mask, the mask of active tiles, of which there are none, and no
-/// values.
+/// A node with children at these places: their mask, the mask of active tiles, of which there are none, and
+/// no values.
 fn push_node(bytes: &mut Vec<u8>, side: u32, children: impl Iterator<Item = usize>) {
     let size = (1 << (3 * side)) / 8;
     let start = bytes.len();

@@ -371,6 +371,6 @@ fn cell(bounds: &Box3, fineness: Fineness) -> Result<f64, MeasureError> {
     Ok(cell)
 }
 
-fn volume_of(bounds: &Box3) -> f64 {
+pub(super) fn volume_of(bounds: &Box3) -> f64 {
     (0..3).map(|axis| f64::from(bounds.high[axis]) - f64::from(bounds.low[axis])).product()
 }

@@ -5,6 +5,7 @@
 //! membership     which side a point is on, and whether the surface may pass within some distance of it
 //! owner          the leaf that decides at a point; the leaves that may matter in a box
 //! tight_bounds   a box around the solid, as narrow as wanted
+//! PartSolids     the parts of a model: membership, volumes, overlaps and distances
 //! measure        volume between bounds, area, centre of mass, and what the division that found them is like
 //! ```
 //!
@@ -17,14 +18,18 @@
 mod bounds;
 mod crossings;
 mod cut;
+mod gap;
 mod measure;
 mod membership;
+mod parts;
 
 pub use bounds::{BoundsError, TightBounds};
+pub use gap::Gap;
 pub use jbt_model::check::NodeId;
 pub use jbt_model::owner::Owner;
 pub use measure::{Contents, Measure, MeasureError, MeasureLevel, Measures, Volume};
 pub use membership::{Membership, MembershipError};
+pub use parts::{PartError, PartPair, PartSolids, Relation};
 
 use std::sync::OnceLock;
 
@@ -33,7 +38,7 @@ use jbt_model::owner;
 use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible as _, Range};
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -110,7 +115,7 @@ impl Solid {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
-        compiled.prepare(&[Need::Ranges, Need::Answers(PointScope::Regions, Query::FIELD)])?;
+        compiled.prepare(&Task::Solid.needs())?;
         Ok(Self {
             compiled: compiled.clone(),
             iso: compiled.tree().iso() as f32,

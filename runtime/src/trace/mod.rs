@@ -59,7 +59,7 @@ use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible as _};
 use crate::buffer::Layout;
-use crate::compiled::{Compiled, Need, PointScope};
+use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
@@ -131,11 +131,7 @@ impl Tracer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
-        compiled.prepare(&[
-            Need::Ranges,
-            Need::Answers(PointScope::Regions, Query::FIELD),
-            Need::Answers(PointScope::Regions, query),
-        ])?;
+        compiled.prepare(&Task::Rays(query).needs())?;
         let (pruner, field) = (compiled.pruner()?, compiled.regional(Query::FIELD)?);
         let full = (query != Query::FIELD).then(|| compiled.regional(query)).transpose()?;
         let tree = compiled.tree();
@@ -277,6 +273,16 @@ impl Tracer {
     #[must_use]
     pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
         owner::owner(self.tree(), self.tree().origin().world(position.map(f64::from)))
+    }
+
+    /// The part of the model at a hit: its place among the [parts](CheckedTree::parts), or nothing if the
+    /// model is one solid.
+    #[must_use]
+    pub fn part(&self, position: [f32; 3]) -> Option<usize> {
+        if self.tree().parts().is_empty() {
+            return None;
+        }
+        Some(self.owner(position)?.above.first()?.1 as usize)
     }
 
     /// The leaf that decides at a position: the leaf of [`owner`](Self::owner). If only one leaf matters at

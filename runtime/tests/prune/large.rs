@@ -60,3 +60,42 @@ fn small_parts_of_large_models_have_the_rows_that_a_pass_finds() {
         }
     }
 }
+
+#[test]
+fn rows_that_reach_far_are_found_by_a_tree_too() {
+    for (operator, rows) in [("union", "primitives"), ("union", "formulas"), ("intersection", "formulas")] {
+        let mut rng = Rng::with_seed(11);
+        let sign = if operator == "union" { '-' } else { '+' };
+        let operands: String = (0..6000)
+            .map(|_| {
+                let [x, y, z] = [(); 3].map(|()| 8.0 * rng.f32() - 4.0);
+                match rows {
+                    "primitives" => format!("point {{ at ({x} {y} {z}) radius 20 }} "),
+                    _ => {
+                        format!("expression {{ 0.6 {sign} sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2) }} ")
+                    }
+                }
+            })
+            .collect();
+        let model = model(&format!("jbt 1 {operator} {{ {operands} }}"));
+        let tree = model.check().expect("a good model");
+        let compiler = Compiler::for_engine(Engine::Lanes);
+        let pruner = Pruner::new(&compiler, &tree).expect("it compiles");
+        let evaluator = compiler.evaluator(&tree, Query::ALL).expect("it compiles");
+        let boxes: Vec<Box3> = (0..100).map(|_| small_box(&mut rng)).collect();
+        let (mut taken, rows_are_formulas) = (Vec::new(), rows == "formulas");
+        let (mut found, mut rows) = (0, 0);
+        for bounds in &boxes {
+            let before = pruner.counters().interval_evaluations;
+            let region = pruner.region(*bounds).expect("a region");
+            taken.push(pruner.counters().interval_evaluations - before);
+            compare(operator, &model, &evaluator, &region, &points_in(&mut rng, bounds, 4));
+            rows += region.rows();
+            found += usize::from(region.rows() < 400);
+        }
+        println!("{operator}: {} rows in a box; ranges {:?} .. {:?}", rows / 100, taken[0], taken[99]);
+        assert!(found > 90, "most boxes have few rows: {found}");
+        // Formulas have no distances to count.
+        assert!(rows_are_formulas || taken[99] < taken[0] / 4, "{taken:?}");
+    }
+}

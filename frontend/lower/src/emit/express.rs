@@ -99,7 +99,7 @@ impl Emitter<'_> {
             _ => Vec::new(),
         };
         self.builder.set_origin(Origin::SHARED);
-        self.answers.push(Answer { field, groups });
+        self.answers.push(Answer::new(field, groups));
     }
 
     /// Whether what is emitted now is the operand of an operator that keeps it within bounds.
@@ -142,8 +142,10 @@ impl Emitter<'_> {
         let mut field = d.add(field, zero);
         if vanishes {
             let silent: Vec<Value> = leaves.fields.iter().map(|&field| d.eq(field, zero)).collect();
-            let all = silent.into_iter().reduce(|all, one| d.both(all, one));
-            field = d.select(all.expect("what vanishes has children"), zero, field);
+            // Without children it is the number 0.
+            if let Some(all) = silent.into_iter().reduce(|all, one| d.both(all, one)) {
+                field = d.select(all, zero, field);
+            }
         }
         if let (Some(sides), Some(point)) = (form.box_numbers(&leaves.numbers), leaves.point) {
             for axis in (0..3).rev() {

@@ -25,6 +25,7 @@ impl Emitter<'_> {
             non_negative: non_negative(self.scene, groups),
             bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
+            ranged: self.probes.is_some(),
             moving: self.query.is_differentiated(),
             mixing: Rc::clone(&self.mixing),
         };

@@ -45,7 +45,7 @@ impl Emitter<'_> {
         });
         let groups = groups.collect();
         self.probe_operand(table, DecidedRows::All, decision, field);
-        self.answers.push(Answer { field, groups });
+        self.answers.push(Answer { field, groups, contest: answer.contest });
     }
 
     /// Opens a fold over one row, of what stands at a place. It carries out what is given here, and whatever

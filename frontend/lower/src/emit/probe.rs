@@ -9,7 +9,10 @@ use jbt_ir::{Table, Value};
 use super::parts::{Operand, Probe, Probes};
 use super::{Emitter, TableCode};
 use crate::instance::{InstanceId, SpaceId};
-use crate::prune_info::{DecidedRows, Decision, DecisionKind, RowContest};
+use crate::mixing::Answer;
+use crate::prune_info::{
+    ContestDifference, ContestGroup, DecidedRows, Decision, DecisionKind, DifferenceSide, RowContest,
+};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 impl Probes {
@@ -23,6 +26,19 @@ impl Probes {
         self.count += 1;
         self.open.last_mut().expect("a row is open").push(Probe { name, value });
         name
+    }
+
+    /// The operator with this field is done. Returns its probe, if one is wanted.
+    fn end(&mut self, field: Value) -> Option<usize> {
+        let first = self.outer.pop().expect("the operator has begun");
+        if self.operands.len() == first {
+            return None;
+        }
+        let node = self.take(field);
+        for Operand { table, rows, kind, name } in self.operands.split_off(first) {
+            self.decisions.push(Decision { table, rows, operand: name, node, kind });
+        }
+        Some(node)
     }
 
     /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables,
@@ -41,8 +57,9 @@ impl Probes {
             used[decision.node] = true;
         }
         let mut values: Vec<Option<Value>> = vec![None; self.count];
-        for node in self.contests.iter().filter_map(|contest| contest.node) {
-            used[node] = true;
+        for contest in &self.contests {
+            let nodes = [contest.node, contest.difference.and_then(|difference| difference.node)];
+            nodes.into_iter().flatten().for_each(|node| used[node] = true);
         }
         for probe in &self.results {
             values[probe.name] = Some(probe.value);
@@ -62,10 +79,14 @@ impl Probes {
             node: names[decision.node],
             ..decision
         };
-        let contests = self.contests.into_iter();
-        let contests =
-            contests.map(|contest| RowContest { node: contest.node.map(|node| names[node]), ..contest });
-        (self.decisions.into_iter().map(rename).collect(), contests.collect())
+        let name = |node: Option<usize>| node.map(|node| names[node]);
+        let contest = |contest: RowContest| RowContest {
+            node: name(contest.node),
+            difference: contest.difference.map(|it| ContestDifference { node: name(it.node), ..it }),
+            ..contest
+        };
+        let contests = self.contests.into_iter().map(contest).collect();
+        (self.decisions.into_iter().map(rename).collect(), contests)
     }
 }
 
@@ -144,17 +165,31 @@ impl Emitter<'_> {
 
     /// The field of the operator whose operands have been met, and the rows of which one has won, if there
     /// are any.
-    pub(super) fn end_operator(&mut self, field: Value, contest: Option<RowContest>) {
+    ///
+    /// Returns the contest's number.
+    pub(super) fn end_operator(&mut self, field: Value, contest: Option<RowContest>) -> Option<usize> {
+        let probes = self.probes.as_mut()?;
+        let node = probes.end(field);
+        let contest = contest?;
+        probes.contests.push(RowContest { node, ..contest });
+        Some(probes.contests.len() - 1)
+    }
+
+    /// The field of a difference, whose sides have been met.
+    pub(super) fn end_difference(&mut self, field: Value, [left, right]: [&Answer; 2]) {
         let Some(probes) = &mut self.probes else { return };
-        let first = probes.outer.pop().expect("the operator has begun");
-        if probes.operands.len() == first {
-            probes.contests.extend(contest);
+        let node = probes.end(field);
+        let sides = [(DifferenceSide::Left, left, right), (DifferenceSide::Right, right, left)];
+        if sides.iter().all(|(_, this, _)| this.contest.is_none()) {
             return;
         }
-        let node = probes.take(field);
-        probes.contests.extend(contest.map(|contest| RowContest { node: Some(node), ..contest }));
-        for Operand { table, rows, kind, name } in probes.operands.split_off(first) {
-            probes.decisions.push(Decision { table, rows, operand: name, node, kind });
+        let node = node.or_else(|| self.probes_here().map(|probes| probes.take(field)));
+        let table = self.row().table;
+        let Some(probes) = &mut self.probes else { return };
+        for (side, this, other) in sides {
+            let Some(contest) = this.contest else { continue };
+            let other = ContestGroup { table, field: other.field, rows: false };
+            probes.contests[contest].difference = Some(ContestDifference { side, other, node });
         }
     }
 }

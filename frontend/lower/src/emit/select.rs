@@ -66,6 +66,6 @@ impl Emitter<'_> {
             numbers: false,
         });
         let groups = groups.collect();
-        self.answers.push(Answer { field, groups });
+        self.answers.push(Answer::new(field, groups));
     }
 }

@@ -106,6 +106,7 @@ impl<'a> Finder<'a> {
         let root = self.resolve((self.scene.tree.root(), world, self.unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
+            jbt_ir::watch::look();
             if let Some(id) = done.take() {
                 frame.children.push(id);
             }

@@ -137,12 +137,16 @@ impl CheckedTree {
         leaf: Primitive,
         maps: impl IntoIterator<Item = (NodeKind, Option<NodeId>)>,
     ) -> Self {
-        let mut nodes =
-            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Children::new(), span: None }];
+        let mut nodes = vec![CheckedNode {
+            kind: NodeKind::Primitive(leaf),
+            children: Children::new(),
+            span: None,
+            label: None,
+        }];
         for (kind, weight) in maps {
             let mut children = Children::from_slice(&[NodeId(nodes.len() as u32 - 1)]);
             children.extend(weight.map(|weight| self.copy_below(weight, &mut nodes)));
-            nodes.push(CheckedNode { kind, children, span: None });
+            nodes.push(CheckedNode { kind, children, span: None, label: None });
         }
         self.of_nodes(nodes)
     }
@@ -168,14 +172,14 @@ impl CheckedTree {
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
         let children = Children::from_slice(&[self.root()]);
-        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None });
+        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None, label: None });
         let mapped = || ModelOrigin::new(map.transform_point3(self.origin.point().into()).to_array());
         let origin = if self.origin.is_world() { self.origin } else { mapped() };
         Self { origin, ..self.of_nodes(nodes) }
     }
 
     /// Appends a copy of a subtree to `nodes`; returns the index of its root.
-    fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
+    pub(super) fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
         let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();
         // Children come before their parents, so the walk over the descendants goes from the last to the
         // first.
@@ -236,7 +240,7 @@ impl CheckedTree {
 }
 
 /// The extent of a node, from the extents of its children.
-fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
+pub(super) fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
     match kind {
         NodeKind::Primitive(leaf) => {
             let support = leaf.skeleton.bounds_within(leaf.radius);

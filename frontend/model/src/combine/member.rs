@@ -168,6 +168,26 @@ pub trait Choice: Operator {
     const EXTREME: Extreme;
 }
 
+/// Of two sides that are apart by the first number of the row, one is the result, to the bit and with its
+/// attributes. Nearer ones have a result beyond that side, by that number at most.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct TakesApart {
+    /// Which one.
+    pub extreme: Extreme,
+    /// Whether the right side is the complement of its field, `max(0, 2 iso - f)`, and gives its attributes
+    /// where its field is above 0.
+    pub complements: bool,
+}
+
+/// How a field follows that of a side.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Growth {
+    /// Where that is larger, it is not smaller.
+    Rises,
+    /// Where that is larger, it is not larger.
+    Falls,
+}
+
 /// What becomes of two sides.
 #[derive(Clone, Copy, Debug)]
 pub struct PairResult<R> {
@@ -217,10 +237,25 @@ pub trait Step: Operator {
     /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
     fn rule(code: Self::Code, non_negative: bool) -> Rule;
 
-    /// Which of two sides is the result, to the bit and with its attributes, if they are apart by the first
-    /// number of the row. The result is never on the other side of it, and beyond it by that number at most.
-    /// `None` if neither is.
-    fn takes_apart(_: Self::Code) -> Option<Extreme> {
+    /// How the field follows either side, in real numbers, if it does in one way everywhere.
+    fn growth(_: Self::Code) -> Option<[Growth; 2]> {
+        None
+    }
+
+    /// What the field may be off by, in f32, where the sides are not larger than these in magnitude. Asked
+    /// where there is a [`growth`](Self::growth).
+    fn rounding<D: Domain>(
+        _: Self::Code,
+        d: &mut D,
+        _sizes: [D::Real; 2],
+        _row: &[D::Real],
+        _iso2: D::Real,
+    ) -> D::Real {
+        d.constant(f32::INFINITY)
+    }
+
+    /// Whether one of two sides that are far apart is the result.
+    fn takes_apart(_: Self::Code) -> Option<TakesApart> {
         None
     }
 

@@ -38,11 +38,13 @@ use crate::field::{Field, FieldValue};
 use crate::member::Member as _;
 
 pub mod difference;
+mod enclosed;
 pub mod extent;
 mod extreme;
 mod form;
 mod limit;
 mod member;
+mod reduce;
 mod rvachev;
 mod set;
 mod set_step;
@@ -50,9 +52,10 @@ mod smooth;
 
 pub use extreme::Extreme;
 pub use member::Syntax;
-pub use member::{Finished, Met, PairResult, Setting};
+pub use member::{Finished, Met, PairResult, Setting, TakesApart};
 pub use set::SetOperation;
 
+use enclosed::enclosed;
 use extent::Extent;
 use form::{Choices, Differences, Folds, Maps, Plain, Steps};
 use member::{Choice, Fold, Operator, Step, Unary};
@@ -186,10 +189,21 @@ macro_rules! operators {
                 match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ }
             }
 
-            /// Which of two sides is the result where they are apart by the first number of the row, if
-            /// either is. The result is beyond that side by that number at most.
-            pub fn takes_apart(self) -> Option<Extreme> {
+            /// See [`TakesApart`].
+            pub fn takes_apart(self) -> Option<TakesApart> {
                 match self { $( Self::$step(code) => <$step as Step>::takes_apart(code), )+ }
+            }
+
+            /// The field of two sides, `plain`, to the bit. Over ranges it is bounded by its values at the ends of
+            /// the sides too, if it follows them in one way.
+            pub fn bounded<D: Domain>(
+                self,
+                d: &mut D,
+                (plain, sides): (D::Real, [D::Real; 2]),
+                row: &[D::Real],
+                iso2: D::Real,
+            ) -> D::Real {
+                match self { $( Self::$step(code) => enclosed::<$step, D>(code, d, (plain, sides), row, iso2), )+ }
             }
 
             /// The field of two sides and the weight of either, from a row of numbers and twice the
@@ -465,34 +479,6 @@ impl Combinator {
             SetOperation::Union => SmoothUnion { width }.into(),
             SetOperation::Intersection => SmoothIntersection { width }.into(),
             SetOperation::Difference => SmoothDifference { width }.into(),
-        }
-    }
-}
-
-impl ReduceCode {
-    /// Names of the numbers that a row keeps for the operator.
-    pub fn columns(self) -> &'static [&'static str] {
-        match self {
-            Self::Fold(code) => code.columns(),
-            Self::Choice(_) => &[],
-            Self::Step(code) => code.columns(),
-        }
-    }
-
-    /// What may be done with operands that are rows and zero; `non_negative`: none can be negative.
-    pub fn rule(self, non_negative: bool) -> Rule {
-        match self {
-            Self::Fold(code) => {
-                if code.absorbs() {
-                    Rule::OnlyZero
-                } else {
-                    Rule::Neutral
-                }
-            }
-            Self::Choice(Extreme::Largest) if non_negative => Rule::Neutral,
-            Self::Choice(Extreme::Smallest) if non_negative => Rule::OnlyZero,
-            Self::Choice(_) => Rule::KeepOne,
-            Self::Step(code) => code.rule(non_negative),
         }
     }
 }

@@ -40,11 +40,15 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{OperatorReach, PairResult};
+use super::member::{Growth, OperatorReach, PairResult};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
+
+/// What R may be off by, as a part of its arguments' sizes. Powers lose the most: the last digits of a ratio
+/// count p times in them.
+const ROUNDING: f32 = 1.0 / (1 << 16) as f32;
 
 /// A family of R-functions, with what of it selects code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -164,6 +168,32 @@ impl SetFormula for Rvachev {
 
     fn rule(self, _: bool) -> Rule {
         Rule::Never
+    }
+
+    fn growth(self) -> Option<[Growth; 2]> {
+        match self.1 {
+            // Slopes of R are 1 and something within 1.
+            Family::Alpha | Family::Power => Some(self.0.growth()),
+            Family::Order(_) => None,
+        }
+    }
+
+    fn rounding<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2], row: &[D::Real], iso2: D::Real) -> D::Real {
+        let (zero, one, two, unit) =
+            (d.constant(0.0), d.constant(1.0), d.constant(2.0), d.constant(ROUNDING));
+        // Sizes of the arguments in units of the iso-value, and what a quotient by the background makes of
+        // an error.
+        let inverse = d.div(two, iso2);
+        let sizes = d.add(a, b);
+        let sizes = d.fma(sizes, inverse, two);
+        let nothing = self.emit_arguments(d, [zero, zero]);
+        let background = self.emit_rvachev(d, nothing, row);
+        let background = d.abs(background.value);
+        let by = d.div(one, background);
+        let steep = d.fma(by, by, by);
+        let off = d.mul(unit, iso2);
+        let off = d.mul(off, sizes);
+        d.mul(off, steep)
     }
 
     fn emit<D: Domain>(

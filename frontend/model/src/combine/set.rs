@@ -1,5 +1,6 @@
 //! The three operations on sets.
 
+use super::member::Growth;
 use crate::field::FieldValue;
 use crate::member::ParameterType;
 
@@ -25,6 +26,14 @@ impl SetOperation {
     #[must_use]
     pub const fn name(self) -> &'static str {
         Self::WORDS[self as usize]
+    }
+
+    /// How fields of the operation follow their sides.
+    pub(super) const fn growth(self) -> [Growth; 2] {
+        match self {
+            Self::Union | Self::Intersection => [Growth::Rises; 2],
+            Self::Difference => [Growth::Rises, Growth::Falls],
+        }
     }
 
     /// It as the value of a parameter: its place among the [words](Self::WORDS).

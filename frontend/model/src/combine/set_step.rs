@@ -5,8 +5,7 @@ use std::hash::Hash;
 
 use jbt_ir::{Domain, Rule};
 
-use super::extreme::Extreme;
-use super::member::{Operator, OperatorReach, PairResult, Step};
+use super::member::{Growth, Operator, OperatorReach, PairResult, Step, TakesApart};
 
 /// The formula of a set operation in a family. It is what of the step selects code.
 pub trait SetFormula: Copy + Eq + Hash + Debug {
@@ -28,8 +27,14 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
     /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
     fn rule(self, non_negative: bool) -> Rule;
 
+    /// See [`Step::growth`].
+    fn growth(self) -> Option<[Growth; 2]>;
+
+    /// See [`Step::rounding`].
+    fn rounding<D: Domain>(self, d: &mut D, sizes: [D::Real; 2], row: &[D::Real], iso2: D::Real) -> D::Real;
+
     /// See [`Step::takes_apart`].
-    fn takes_apart(self) -> Option<Extreme> {
+    fn takes_apart(self) -> Option<TakesApart> {
         None
     }
 
@@ -89,7 +94,21 @@ impl<T: SetStep> Step for T {
         formula.rule(non_negative)
     }
 
-    fn takes_apart(formula: T::Formula) -> Option<Extreme> {
+    fn growth(formula: T::Formula) -> Option<[Growth; 2]> {
+        formula.growth()
+    }
+
+    fn rounding<D: Domain>(
+        formula: T::Formula,
+        d: &mut D,
+        sizes: [D::Real; 2],
+        row: &[D::Real],
+        iso2: D::Real,
+    ) -> D::Real {
+        formula.rounding(d, sizes, row, iso2)
+    }
+
+    fn takes_apart(formula: T::Formula) -> Option<TakesApart> {
         formula.takes_apart()
     }
 

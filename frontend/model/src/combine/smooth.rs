@@ -21,7 +21,7 @@
 use jbt_ir::{Domain, Rule};
 
 use super::extreme::Extreme;
-use super::member::{OperatorReach, PairResult};
+use super::member::{Growth, OperatorReach, PairResult, TakesApart};
 use super::set::SetOperation;
 use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
@@ -29,6 +29,9 @@ use crate::skeleton::positive_part;
 /// Widths below this count as this where they divide: the squares of quotients, which derivatives are made
 /// of, have to be finite.
 const SMALLEST: f32 = 1.0 / (1u64 << 50) as f32;
+/// What a field may be off by, as a part of the sum of all numbers that it is made of: 64 units in the last
+/// place.
+const ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 
 /// Names of the numbers that a row keeps.
 pub(super) const COLUMNS: &[&str] = &["width", "quarter"];
@@ -139,11 +142,26 @@ impl SetFormula for Smooth {
         }
     }
 
-    fn takes_apart(self) -> Option<Extreme> {
+    fn growth(self) -> Option<[Growth; 2]> {
+        Some(self.0.growth())
+    }
+
+    fn rounding<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2], row: &[D::Real], iso2: D::Real) -> D::Real {
+        // Every step is off by a few units in the last place of one of these. Where the limit is below
+        // SMALLEST, the quotient is that of another width.
+        let (unit, floor) = (d.constant(ROUNDING), d.constant(SMALLEST));
+        let fields = d.add(a, b);
+        let numbers = d.add(row[0], iso2);
+        let size = d.add(fields, numbers);
+        d.fma(size, unit, floor)
+    }
+
+    fn takes_apart(self) -> Option<TakesApart> {
         match self.0 {
-            SetOperation::Union => Some(Extreme::Largest),
-            SetOperation::Intersection => Some(Extreme::Smallest),
-            SetOperation::Difference => None,
+            SetOperation::Union => Some(TakesApart { extreme: Extreme::Largest, complements: false }),
+            SetOperation::Intersection => Some(TakesApart { extreme: Extreme::Smallest, complements: false }),
+            // Its width is limited once more, which makes it narrower.
+            SetOperation::Difference => Some(TakesApart { extreme: Extreme::Smallest, complements: true }),
         }
     }
 

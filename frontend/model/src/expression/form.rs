@@ -174,14 +174,15 @@ impl Form {
     }
 
     /// Whether it is 0 where all children are 0, for any coordinates and for any value of the numbers that
-    /// `known` does not give.
+    /// `known` does not give. Without children only the number 0 itself is.
     pub fn vanishes(&self, known: impl Fn(usize) -> Option<f64>) -> bool {
         let range = |operand| match operand {
             Operand::Child(_) => [0.0; 2],
             Operand::Number(number) => known(number as usize).map_or(ANY, |value| [value; 2]),
             Operand::Coordinate(_) | Operand::Step(_) => ANY,
         };
-        self.children > 0 && self.fold(range, |operation, _, ranges| operation.range(ranges)) == [0.0; 2]
+        let is_known = self.children > 0 || self.steps.is_empty();
+        is_known && self.fold(range, |operation, _, ranges| operation.range(ranges)) == [0.0; 2]
     }
 
     /// Whether it is never negative, derived from the signs of children and numbers.

@@ -119,7 +119,8 @@ impl Expression {
         Some(Bounds::new(corner(&sides[..3]), corner(&sides[3..])))
     }
 
-    /// Whether it is 0 wherever all its children are 0, for all coordinates. False without children.
+    /// Whether it is 0 wherever all its children are 0, for all coordinates. Without children: whether it is
+    /// written as the number 0.
     #[must_use]
     pub fn vanishes(&self) -> bool {
         self.form.vanishes(|number| Some(self.numbers[number]))
@@ -219,6 +220,19 @@ impl Formula {
         let distance = assembler.apply(&divide, vec![Draft::Child(0), Draft::Constant(radius)]);
         let field = assembler.apply(&Step::Call(Function::falloff(falloff), 1), vec![distance]);
         Self::new(assembler.finish(&[field]), None)
+    }
+
+    /// The field that is 0 everywhere: that of the node `empty`.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self::new(Assembler::default().finish(&[Draft::Constant(0.0.into())]), None)
+    }
+
+    /// Whether it is [`zero`](Self::zero).
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        let plain = |number: &Number| !number.depends_on_parameters() && number.value().to_bits() == 0;
+        *self.form == *Self::zero().form && self.numbers.iter().all(plain)
     }
 
     /// The corners of its box, if it has one, smallest first.

@@ -249,6 +249,14 @@ impl SceneFormat {
         Err(vec![Diagnostic::error(None, message)].into())
     }
 
+    /// The model of a file of particles; nothing if files of this format are something else.
+    pub(crate) fn read_particles(self, bytes: &[u8], options: &ParticleOptions) -> Option<ReadModel> {
+        match self.row().read {
+            SceneReader::Scene(_) => None,
+            SceneReader::Particles(read) => Some(read(bytes, options)),
+        }
+    }
+
     /// What is said of a file of more than [`max_bytes`](Self::max_bytes).
     #[must_use]
     pub fn too_large(self, name: &str) -> Diagnostics {

@@ -31,7 +31,12 @@ impl Imported {
 
     /// The result of reading these bytes.
     pub(super) fn from(bytes: &[u8], read: ReadModel) -> Result<Self, Diagnostics> {
-        let source = Some(SourceText::new(SourceText::UNNAMED, bytes));
+        Self::of(SourceText::new(SourceText::UNNAMED, bytes), read)
+    }
+
+    /// The result of reading this text.
+    pub(super) fn of(source: SourceText, read: ReadModel) -> Result<Self, Diagnostics> {
+        let source = Some(source);
         match read {
             Ok((model, warnings)) => {
                 let warnings = Diagnostics::new(warnings, source.clone());

@@ -41,6 +41,9 @@
 //! * Every result has an identity, so `x * x` and `fma(x, x, c)` are known to be squares. Two ranges with
 //!   equal bounds are not one value; one value that is used twice is.
 //! * Facts that are known before there are numbers, signs above all, choose short forms.
+//! * The larger of `x` and `k - x` is not below `k / 2`, the smaller one not above (see `order`).
+//! * A formula that is known to grow is bounded by its values at ends, by `low_end`. The range of that op is
+//!   no enclosure: it is the end.
 
 mod arithmetic;
 mod enclosure;
@@ -80,7 +83,9 @@ impl<D: Domain> Domain for Interval<D> {
     }
 
     fn sub(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
-        self.bounds(of_both(Op::Sub, a, b), |d| d.sub(a.low, b.high), |d| d.sub(a.high, b.low))
+        let difference =
+            self.bounds(of_both(Op::Sub, a, b), |d| d.sub(a.low, b.high), |d| d.sub(a.high, b.low));
+        self.complement(a, b, difference)
     }
 
     fn mul(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
@@ -216,5 +221,9 @@ impl<D: Domain> Domain for Interval<D> {
     /// The same value, so it keeps its identity.
     fn stop_gradient(&mut self, a: Range<D>) -> Range<D> {
         a
+    }
+
+    fn low_end(&mut self, a: Range<D>) -> Range<D> {
+        self.lowest(a)
     }
 }

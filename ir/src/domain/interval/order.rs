@@ -3,12 +3,21 @@
 //! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound
 //! is the low bound of b. Where b may be NaN, the result may be NaN, and a bound has to show it. `min` is the
 //! mirror image.
+//!
+//! ```text
+//! max(x, k - x) >= k / 2 >= min(x, k - x)         and so of extremes of these and of others
+//! ```
+//!
+//! In f32 too: if x is below k/2, `k - x` is above, and rounding is monotone. If x may be NaN nothing is
+//! known.
 
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
 use super::facts::{Facts, Sign};
-use super::value::{Certainty, Interval, Range, of_both, same};
+use super::value::{
+    Bounded, Bounding, Certainty, Interval, MOST_BOUNDING, Range, RangeComplement, of_both, same,
+};
 
 /// One side of two numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -51,9 +60,70 @@ impl Side {
     }
 }
 
+/// What a value counts as where the extreme on a side is taken.
+fn bounding<D: Domain>(side: Side, a: Range<D>) -> [Option<Bounding<D>>; MOST_BOUNDING] {
+    let mut all = [None; MOST_BOUNDING];
+    match a.bounded {
+        Bounded::Extreme(other, several) if other == side => return several,
+        Bounded::Extreme(..) | Bounded::Alone => {
+            all[0] = Some(Bounding { identity: a.identity, complement: None })
+        }
+        Bounded::Complement(complement) => {
+            all[0] = Some(Bounding { identity: a.identity, complement: Some(complement) });
+        }
+    }
+    all
+}
+
 impl<D: Domain> Interval<D> {
-    /// `min` or `max`. The inner bound is limited by both operands, the outer one reaches as far as either.
+    /// Half of k, if `k - x` and x are among two lists; NaN where x may be NaN.
+    fn half(&mut self, lists: [[Option<Bounding<D>>; MOST_BOUNDING]; 2]) -> Option<D::Real> {
+        let all = || lists.into_iter().flatten().flatten();
+        let complement =
+            all().filter_map(|it| it.complement).find(|it| all().any(|x| x.identity == it.base))?;
+        let half = self.domain.constant(0.5);
+        let half = self.domain.mul(complement.whole, half);
+        let half = self.guarded(half, complement.ends[0]);
+        Some(self.guarded(half, complement.ends[1]))
+    }
+
+    /// The range of `a - b`, which is a complement if `a` is a point.
+    pub(super) fn complement(&mut self, a: Range<D>, b: Range<D>, difference: Range<D>) -> Range<D> {
+        if !a.facts.point || b.facts.point {
+            return difference;
+        }
+        let complement = RangeComplement { base: b.identity, ends: [b.low, b.high], whole: a.low };
+        Range { bounded: Bounded::Complement(complement), ..difference }
+    }
+
+    /// The low end as a point.
+    pub(super) fn lowest(&mut self, a: Range<D>) -> Range<D> {
+        let low = self.finite_low(a);
+        self.range(low, low, Facts::of(Op::LowEnd, &[a.facts], false))
+    }
+
+    /// `min` or `max`, with what is known of complements.
     pub(super) fn extreme(&mut self, side: Side, a: Range<D>, b: Range<D>) -> Range<D> {
+        let extreme = self.extreme_of(side, a, b);
+        if extreme.facts.point {
+            return extreme;
+        }
+        let lists = [bounding(side, a), bounding(side, b)];
+        let mut several = [None; MOST_BOUNDING];
+        // The last ones: what is met next is likely to be about them.
+        let all = lists.into_iter().flatten().flatten().collect::<Vec<_>>();
+        let last = &all[all.len().saturating_sub(MOST_BOUNDING)..];
+        several.iter_mut().zip(last).for_each(|(place, &it)| *place = Some(it));
+        let extreme = Range { bounded: Bounded::Extreme(side, several), ..extreme };
+        let Some(half) = self.half(lists) else { return extreme };
+        match side {
+            Side::Lowest => Range { high: self.domain.min(half, extreme.high), ..extreme },
+            Side::Highest => Range { low: self.domain.max(half, extreme.low), ..extreme },
+        }
+    }
+
+    /// `min` or `max`. The inner bound is limited by both operands, the outer one reaches as far as either.
+    fn extreme_of(&mut self, side: Side, a: Range<D>, b: Range<D>) -> Range<D> {
         let facts = of_both(side.op(), a, b);
         let (a_inner, a_outer) = side.inner_and_outer(a);
         let (b_inner, b_outer) = side.inner_and_outer(b);

@@ -391,3 +391,60 @@ block0:
     // v2: [1, 2] - 4 [1, 2] = [-7, -2]; v3: what v2 was: [1, 2].
     assert_eq!(enclose(&function, &tables, &[[1.0, 2.0]]), [[-14.0, -2.0], [1.0, 2.0]]);
 }
+
+#[test]
+fn a_value_and_its_complement_are_not_both_on_one_side() {
+    // max(x, 3 - x) and the minimum, with others between.
+    let of = |is_max: bool, again: bool| {
+        range_of(&[[-3.0, 8.0], [-9.0, -7.0]], |b, x, y, _| {
+            let (three, zero) = (b.constant(3.0), b.constant(if is_max { -5.0 } else { 5.0 }));
+            let rest = b.sub(three, x);
+            let y = if is_max { y } else { b.neg(y) };
+            let other = if again { b.sub(three, x) } else { x };
+            let step = |b: &mut FunctionBuilder, so_far, next| {
+                if is_max { b.max(next, so_far) } else { b.min(next, so_far) }
+            };
+            let so_far = step(b, zero, other);
+            let so_far = step(b, so_far, y);
+            step(b, so_far, rest)
+        })
+    };
+    assert_eq!(of(true, false), [1.5, 8.0]);
+    assert_eq!(of(false, false), [-5.0, 1.5]);
+    // Not of the complement twice.
+    assert_eq!(of(true, true), [-5.0, 6.0]);
+    // What may be NaN may be it on both sides.
+    let both = |b: &mut FunctionBuilder, x, _, _| {
+        let three = b.constant(3.0);
+        let root = b.sqrt(x);
+        let rest = b.sub(three, root);
+        b.max(root, rest)
+    };
+    assert_eq!(range_of(&[[-1.0, 4.0]], both), ALL);
+    assert_eq!(range_of(&[[0.0, 16.0]], both), [1.5, 4.0]);
+}
+
+#[test]
+fn an_end_is_a_number() {
+    let low = |b: &mut FunctionBuilder, x, _, _| b.low_end(x);
+    assert_eq!(range_of(&[[-3.0, 2.0]], low), [-3.0, -3.0]);
+    assert_eq!(range_of(&[[f32::NEG_INFINITY, 2.0]], low), ALL);
+    assert_eq!(range_of(&[[-3.0, f32::INFINITY]], low), ALL);
+    // x - x^3 / 16 grows here; op by op it is [-2.5, 2.5].
+    let bounded = |b: &mut FunctionBuilder, x, _, _| {
+        let part = b.constant(-1.0 / 16.0);
+        let cubic = |b: &mut FunctionBuilder, x| {
+            let square = b.mul(x, x);
+            let cube = b.mul(square, x);
+            b.fma(cube, part, x)
+        };
+        let plain = cubic(b, x);
+        let minus = b.neg(x);
+        let (low, high) = (b.low_end(x), b.low_end(minus));
+        let high = b.neg(high);
+        let (low, high) = (cubic(b, low), cubic(b, high));
+        let below = b.min(high, plain);
+        b.max(low, below)
+    };
+    assert_eq!(range_of(&[[-2.0, 2.0]], bounded), [-1.5, 1.5]);
+}

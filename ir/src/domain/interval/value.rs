@@ -1,6 +1,9 @@
 //! What the values of the interval domain are, and what its ops are made of.
 
+use std::fmt;
+
 use super::facts::Facts;
+use super::order::Side;
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
@@ -15,6 +18,40 @@ pub struct Range<D: Domain> {
     pub(super) identity: usize,
     /// If it is a power of another value.
     pub(super) power: Option<RangePower<D>>,
+    /// If it is the complement of another value, or an extreme of values.
+    pub(super) bounded: Bounded<D>,
+}
+
+/// What other values bound a value.
+pub(super) enum Bounded<D: Domain> {
+    /// None is known.
+    Alone,
+    /// It is `k - x`, k being a point.
+    Complement(RangeComplement<D>),
+    /// It is an extreme of some of these.
+    Extreme(Side, [Option<Bounding<D>>; MOST_BOUNDING]),
+}
+
+/// How many values an extreme remembers.
+pub(super) const MOST_BOUNDING: usize = 4;
+
+/// `k - x`.
+#[derive(Debug)]
+pub(super) struct RangeComplement<D: Domain> {
+    /// The identity of x.
+    pub(super) base: usize,
+    /// The bounds of x.
+    pub(super) ends: [D::Real; 2],
+    /// k.
+    pub(super) whole: D::Real,
+}
+
+/// A value of which an extreme has been taken.
+pub(super) struct Bounding<D: Domain> {
+    /// Its identity.
+    pub(super) identity: usize,
+    /// If it is one.
+    pub(super) complement: Option<RangeComplement<D>>,
 }
 
 /// What a power knows of the value that it is a power of, its *base*. The products of which odd powers are
@@ -27,6 +64,20 @@ pub struct RangePower<D: Domain> {
     pub(super) ends: [D::Real; 2],
     /// How often that has been squared.
     pub(super) squarings: u32,
+}
+
+impl<D: Domain> fmt::Debug for Bounded<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Alone => f.write_str("Alone"),
+            Self::Complement(complement) => write!(f, "Complement({})", complement.base),
+            Self::Extreme(side, several) => {
+                let identities = several.iter().flatten().map(|it| it.identity);
+                write!(f, "{side:?} ")?;
+                f.debug_list().entries(identities).finish()
+            }
+        }
+    }
 }
 
 /// A mask: at most one of the two fields holds.
@@ -55,7 +106,7 @@ macro_rules! copies {
     )+ };
 }
 
-copies!(Range RangePower Certainty Known);
+copies!(Range RangePower Bounded RangeComplement Bounding Certainty Known);
 
 /// The interval domain over `D`.
 #[derive(Debug)]
@@ -104,7 +155,7 @@ impl<D: Domain> Interval<D> {
     pub(super) fn range(&mut self, low: D::Real, high: D::Real, facts: Facts) -> Range<D> {
         let identity = self.next;
         self.next += 1;
-        Range { low, high, facts, identity, power: None }
+        Range { low, high, facts, identity, power: None, bounded: Bounded::Alone }
     }
 
     /// A new value with these bounds; of a point only the low one is computed.

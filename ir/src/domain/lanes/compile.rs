@@ -76,6 +76,7 @@ impl<'a> Compiler<'a> {
 
     /// Writes an instruction, or the pair whose second instruction it is.
     fn inst(&mut self, inst: Inst, pair: Option<&Paired>) {
+        crate::watch::look();
         let data = &self.function.insts[inst];
         let result = self.place(data.results[0]);
         match &data.kind {

@@ -348,4 +348,9 @@ impl Domain for Lanes<'_> {
     fn stop_gradient(&mut self, a: Handle) -> Handle {
         self.unary(a, |a| a)
     }
+
+    #[inline(always)]
+    fn low_end(&mut self, a: Handle) -> Handle {
+        self.unary(a, |a| a)
+    }
 }

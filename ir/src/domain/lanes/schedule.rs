@@ -314,6 +314,7 @@ fn ranges(function: &Function, events: &[Event], holder: &[Value]) -> Vec<InstRa
         open: Vec::new(),
     };
     for (position, event) in events.iter().enumerate() {
+        crate::watch::look();
         match *event {
             Event::Inst(inst) => {
                 let data = &function.insts[inst];

@@ -63,6 +63,7 @@ pub(super) fn backward(graph: &Graph, tie: Tie) -> Vec<usize> {
     }
     let mut order = Vec::with_capacity(graph.insts.len());
     while let Some((_, _, _, node)) = this.heap.pop() {
+        crate::watch::look();
         if !this.placed[node] {
             order.push(node);
             this.place(node);

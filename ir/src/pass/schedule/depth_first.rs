@@ -60,6 +60,7 @@ impl DepthFirst<'_> {
     fn place(&mut self, root: usize) {
         let mut stack = vec![(root, self.by_need(self.graph.operands(root)).into_iter())];
         while let Some((node, operands)) = stack.last_mut() {
+            crate::watch::look();
             let node = *node;
             if self.placed[node] {
                 stack.pop();

@@ -62,6 +62,7 @@ impl Graph {
         };
         let mut operands = Lists { starts: vec![0], items: Vec::new() };
         for (position, &inst) in insts.iter().enumerate() {
+            crate::watch::look();
             let (initial, captured) = uses.of(function, inst);
             list(position, initial, &mut operands.items);
             list(position, captured, &mut operands.items);

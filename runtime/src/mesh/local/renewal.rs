@@ -14,6 +14,7 @@ use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::options::Options;
 use crate::mesh::sample;
+use crate::mesh::scope::DivisionScope;
 use crate::mesh::vertex;
 use crate::mesh::vertex::batch::VertexSource;
 use crate::progress::{EACH, Progress};
@@ -51,7 +52,8 @@ impl BrickMesh {
         let options = Options { brick, thin_parts: false, ..options.clone() };
         loop {
             let axes = lattice.axes();
-            let division = divide::divide(field, axes, (&options, touched.as_ref()), MAX_BRICKS, &progress)?;
+            let scope = touched.as_ref().map_or(DivisionScope::Everything, DivisionScope::Touched);
+            let division = divide::divide(field, axes, (&options, scope), MAX_BRICKS, &progress)?;
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
             let samples = sample::sample(field, &bricks, &regions, &progress)?;
             let mut found = crossing::look(&bricks, &samples, options.iso);

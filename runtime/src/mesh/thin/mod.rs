@@ -62,6 +62,7 @@ pub(super) fn find<F: Field>(
         let (mut found, mut near) = (ChunkFindings::default(), 0);
         for (&place, region) in places.iter().zip(regions) {
             search.chunk((edge, place), region, &mut near, &mut found)?;
+            progress.breathe()?;
         }
         progress.add(1.0 / total as f64)?;
         Ok(found)

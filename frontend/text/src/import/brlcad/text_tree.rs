@@ -25,7 +25,7 @@ const OPERATIONS: &[(&[u8], ProgramStep)] = &[
 /// A combination from its tree. One without words has no members.
 pub(super) fn combination(bytes: &[u8], tree: Span) -> Result<Combination, Diagnostic> {
     let (at, end) = (tree.start as usize, tree.end as usize);
-    let mut reader = TreeReader { bytes, at, end, made: Combination::default(), open: Vec::new() };
+    let mut reader = TextTreeReader { bytes, at, end, made: Combination::default(), open: Vec::new() };
     if reader.peek().is_none() {
         return Ok(reader.made);
     }
@@ -59,7 +59,7 @@ struct OpenOperation {
     span: Span,
 }
 
-struct TreeReader<'a> {
+struct TextTreeReader<'a> {
     bytes: &'a [u8],
     at: usize,
     end: usize,
@@ -67,7 +67,7 @@ struct TreeReader<'a> {
     open: Vec<OpenOperation>,
 }
 
-impl TreeReader<'_> {
+impl TextTreeReader<'_> {
     /// The next byte that is no blank.
     fn peek(&mut self) -> Option<u8> {
         while self.at < self.end && (self.bytes[self.at].is_ascii_whitespace() || self.bytes[self.at] == 0) {

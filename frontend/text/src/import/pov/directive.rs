@@ -257,22 +257,6 @@ impl Script<'_> {
         Ok(())
     }
 
-    /// Another file. The names of the usual colours are known without it.
-    fn include(&mut self, span: Span) -> Result<(), Diagnostic> {
-        let (token, at) = self.scanner.next()?;
-        if token != PovToken::Text {
-            return Err(self.scanner.unexpected(token, at).expected("expected the name of a file"));
-        }
-        let name = format!("\"{}\"", self.scanner.shown(at));
-        if name != "\"colors.inc\"" {
-            self.left_out.note(span, &format!("the file {name} is not read"));
-            if self.missing.len() < 8 {
-                self.missing.push(name);
-            }
-        }
-        Ok(())
-    }
-
     /// A macro, which is kept by name alone.
     fn macro_definition(&mut self, span: Span) -> Result<(), Diagnostic> {
         let (name, _) = self.scanner.expect_word("a name")?;

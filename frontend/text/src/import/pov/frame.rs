@@ -21,8 +21,13 @@ impl Script<'_> {
     pub(super) fn run(&mut self) -> Result<(), Diagnostic> {
         loop {
             let (token, span) = self.scanner.next()?;
+            if token == PovToken::End {
+                if self.leave_file()? {
+                    continue;
+                }
+                return self.finished();
+            }
             match (token, self.frames.last().map(|(frame, _)| frame)) {
-                (PovToken::End, _) => return self.finished(),
                 (PovToken::Mark(b'#'), _) => self.directive()?,
                 (_, None) => self.top(token, span)?,
                 (_, Some(PovFrame::Blob(_))) => self.in_blob(token, span)?,

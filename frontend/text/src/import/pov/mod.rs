@@ -20,6 +20,8 @@
 //! same to the bit of a formula. It is inside where the field is above the threshold, the iso-value here. If
 //! blobs of one scene have different thresholds, strengths are divided by them, and the iso-value is 1.
 //!
+//! `#include` reads files beside the scene, through the resolver of the caller.
+//!
 //! Coordinates are those of the scene: y is up, and axes are left-handed.
 
 mod amount;
@@ -29,6 +31,7 @@ mod directive;
 mod expression;
 mod frame;
 mod group;
+mod include;
 mod look;
 mod modifier;
 mod open;
@@ -42,6 +45,7 @@ use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics};
 use jbt_model::model::Model;
 
+use self::include::PovTexts;
 use self::script::Script;
 use super::Imported;
 use super::format::SceneFormatRow;
@@ -63,15 +67,16 @@ pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
 /// where a blob needs one, loops that take too many steps, blobs in set operations with other shapes, a scene
 /// that places no blob.
 pub fn pov(bytes: &[u8], options: &Options) -> Result<Imported, Diagnostics> {
-    Imported::from(bytes, read(bytes, options))
+    let texts = PovTexts::new(bytes, &options.files);
+    Imported::of(texts.source(), read(&texts, options))
 }
 
-fn read(bytes: &[u8], options: &Options) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
-    if bytes.len() > MAX_SCENE_BYTES {
-        let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", bytes.len());
+fn read(texts: &PovTexts, options: &Options) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
+    if texts.own() > MAX_SCENE_BYTES {
+        let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", texts.own());
         return Err(vec![Diagnostic::limit(None, message)]);
     }
-    let mut script = Script::new(bytes);
+    let mut script = Script::new(texts);
     let ran = script.run().and_then(|()| scene::model(&mut script, options.object.as_deref()));
     let warnings = script.left_out.finish();
     match ran {

@@ -1,5 +1,7 @@
 //! Tokens of a POV-Ray scene, found where they are asked for: loops go back in the text.
 
+use std::ops::Range;
+
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::clip;
 
@@ -26,15 +28,26 @@ pub(super) enum PovToken {
 
 /// The text, and a place in it.
 pub(super) struct PovScanner<'a> {
+    /// All texts.
+    all: &'a [u8],
+    /// Up to the end of this one.
     bytes: &'a [u8],
+    /// Where this one begins.
+    start: usize,
     at: usize,
     /// The token at the place, and the place behind it, if it was looked at.
     ahead: Option<(PovToken, Span, usize)>,
 }
 
 impl<'a> PovScanner<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, ahead: None }
+    /// One of several texts.
+    pub(super) fn of(all: &'a [u8], text: Range<usize>) -> Self {
+        Self { all, bytes: &all[..text.end], start: text.start, at: text.start, ahead: None }
+    }
+
+    /// Goes on with another text.
+    pub(super) fn enter(&mut self, text: Range<usize>) {
+        *self = Self::of(self.all, text);
     }
 
     /// The place where the next token is looked for.
@@ -50,17 +63,17 @@ impl<'a> PovScanner<'a> {
 
     /// Whether bytes stand between two places.
     pub(super) fn holds(&self, from: usize, to: usize, bytes: &[u8]) -> bool {
-        self.bytes[from..to].windows(bytes.len()).any(|window| window == bytes)
+        self.all[from..to].windows(bytes.len()).any(|window| window == bytes)
     }
 
     /// The bytes of a span as a word; what is no text is no word of the language either.
     pub(super) fn word(&self, span: Span) -> &'a str {
-        std::str::from_utf8(&self.bytes[span.start as usize..span.end as usize]).unwrap_or("?")
+        std::str::from_utf8(&self.all[span.start as usize..span.end as usize]).unwrap_or("?")
     }
 
     /// A span for a message.
     pub(super) fn shown(&self, span: Span) -> String {
-        clip(&String::from_utf8_lossy(&self.bytes[span.start as usize..span.end as usize]))
+        clip(&String::from_utf8_lossy(&self.all[span.start as usize..span.end as usize]))
     }
 
     /// The next token, which stays there.
@@ -207,7 +220,7 @@ impl<'a> PovScanner<'a> {
                 (byte, _) if byte.is_ascii_whitespace() => self.at += 1,
                 (0 | 0x1a, _) if self.at < self.bytes.len() => self.at += 1,
                 // The mark of UTF-8.
-                (0xef, 0xbb) if self.at == 0 => self.at = 3.min(self.bytes.len()),
+                (0xef, 0xbb) if self.at == self.start => self.at = (self.start + 3).min(self.bytes.len()),
                 _ => return Ok(()),
             }
         }

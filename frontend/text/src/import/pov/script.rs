@@ -8,6 +8,7 @@ use jbt_ir::limits::{MAX_BLOCK_DEPTH, MAX_SCRIPT_STEPS};
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::{Amount, Streams, vector};
+use super::include::{PovReturn, PovTexts};
 use super::open::{PovBlock, PovFrame};
 use super::scan::PovScanner;
 use super::shape::PovShapes;
@@ -28,6 +29,9 @@ pub(super) enum Value {
 /// A scene that is being run.
 pub(super) struct Script<'a> {
     pub(super) scanner: PovScanner<'a>,
+    pub(super) texts: &'a PovTexts,
+    /// Files that are being run.
+    pub(super) returns: Vec<PovReturn>,
     names: HashMap<String, Value>,
     /// Declared shapes, in the order of their first declarations.
     pub(super) declared: Vec<String>,
@@ -50,14 +54,16 @@ pub(super) struct Script<'a> {
 }
 
 impl<'a> Script<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(super) fn new(texts: &'a PovTexts) -> Self {
         Self {
-            scanner: PovScanner::new(bytes),
+            scanner: PovScanner::of(&texts.bytes, 0..texts.own()),
+            texts,
+            returns: Vec::new(),
             names: HashMap::new(),
             declared: Vec::new(),
             streams: Streams::default(),
             // What is written out pays for itself.
-            left: MAX_SCRIPT_STEPS + bytes.len() / 4,
+            left: MAX_SCRIPT_STEPS + texts.bytes.len() / 4,
             asked: 0,
             blocks: Vec::new(),
             frames: Vec::new(),

@@ -1,0 +1,91 @@
+//! The hash of a model by what it means: equal over runs, machines and versions of this project.
+//!
+//! ```text
+//! hash(node)  = FNV("words and numbers of the node as printed", hash(child 0), hash(child 1), ..)
+//! hash(model) = FNV("jbt hash 1", statements as printed, hash(root))
+//! ```
+//!
+//! Names of nodes, comments, places in a text and what is shared do not count; parameters do, with their
+//! names and defaults. The hash is FNV-1a of 128 bits (Fowler, Noll and Vo; RFC 9923). It tells models apart
+//! and is no protection against those who look for two with one hash.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use jbt_model::model::Model;
+use jbt_model::traverse::Visit;
+use jbt_model::tree::Tree;
+
+use crate::print::{node_words, statements};
+
+/// The hash of a model, or of a part of one: see [`hash`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct ModelHash(u128);
+
+/// What the hash depends on besides the model. It changes when equal models would have other hashes.
+pub const HASH_VERSION: u32 = 1;
+
+impl ModelHash {
+    const PRIME: u128 = (1 << 88) + 0x13b;
+
+    /// That of nothing.
+    const fn start() -> Self {
+        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+
+    fn add(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u128::from(byte)).wrapping_mul(Self::PRIME);
+        }
+        // Ends what was added: texts that follow each other do not become one.
+        self.0 = (self.0 ^ 0xff).wrapping_mul(Self::PRIME);
+    }
+
+    /// Its bits.
+    #[must_use]
+    pub const fn bits(self) -> u128 {
+        self.0
+    }
+}
+
+impl fmt::Display for ModelHash {
+    /// The version and 32 hexadecimal digits.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{HASH_VERSION}-{:032x}", self.0)
+    }
+}
+
+/// The hash of a model. Equal models have equal hashes, whatever their nodes are called and whichever of
+/// them are shared; see the [module](self).
+///
+/// ```
+/// use jbt_text::{hash, model};
+/// let [a, b, c] = ["point { radius 1 }", "# a ball\nball: point { radius 1.0 }", "point { radius 2 }"]
+///     .map(|text| hash(&model(&format!("jbt 1 {text}")).unwrap()));
+/// assert!(a == b && a != c);
+/// assert_eq!(a.to_string(), "1-d3865ed2e8c82e874bb0c23c53b32fb9");
+/// ```
+///
+/// Cost: linear in the number of nodes, shared ones counted once.
+#[must_use]
+pub fn hash(model: &Model) -> ModelHash {
+    let mut all = ModelHash::start();
+    all.add(format!("jbt hash {HASH_VERSION}").as_bytes());
+    statements(model).iter().for_each(|statement| all.add(statement.as_bytes()));
+    all.add(&hashes(&model.root)[&model.root.identity()].0.to_le_bytes());
+    all
+}
+
+/// The hashes of all nodes below a root, by their identities.
+pub(crate) fn hashes(root: &Tree) -> HashMap<usize, ModelHash> {
+    let mut hashes: HashMap<usize, ModelHash> = HashMap::new();
+    for tree in root.postfix(Visit::Nodes) {
+        let mut hash = ModelHash::start();
+        hash.add(node_words(tree).as_bytes());
+        for child in tree.node().children() {
+            hash.add(&hashes[&child.identity()].0.to_le_bytes());
+        }
+        hashes.insert(tree.identity(), hash);
+    }
+    hashes
+}

@@ -1,0 +1,144 @@
+//! Whether compiling is still wanted: what lowers, changes and emits code looks every now and then, and
+//! stops where it is.
+//!
+//! ```text
+//! offer(watch, work)     what may be stopped below is stopped by this watch
+//!   stoppable(work)      Err(Stopped) if a look was told to stop; work is half done then, and thrown away
+//!     look()             in inner loops: costs a decrement, and asks the watch every few milliseconds
+//!     under(active(), task)  a part of the work that another thread does
+//! ```
+//!
+//! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
+//! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is never
+//! stopped. A thread that waits for others while it is, waits [`under`] no watch, for it may do work for
+//! somebody else meanwhile.
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::thread::LocalKey;
+use std::time::{Duration, Instant};
+
+/// Says whether to go on.
+pub type Watch = Arc<dyn Fn() -> bool + Send + Sync>;
+
+/// Looks that are not even worth a look at the clock: some microseconds.
+const LOOKS: u32 = 64;
+/// Between two questions of one thread.
+const ASKED: Duration = Duration::from_millis(5);
+
+thread_local! {
+    static OFFERED: RefCell<Option<Watch>> = const { RefCell::new(None) };
+    static ACTIVE: RefCell<Option<Watch>> = const { RefCell::new(None) };
+    /// Looks until the next one at the clock.
+    static LEFT: Cell<u32> = const { Cell::new(LOOKS) };
+    /// When a watch was last asked.
+    static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
+}
+
+type Place = LocalKey<RefCell<Option<Watch>>>;
+
+/// Work was stopped by its watch.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Stopped;
+
+/// Does work with a watch in a place. The one before comes back in the end.
+fn with<T>(place: &'static Place, watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
+    struct Before(&'static Place, Option<Watch>);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            self.0.set(self.1.take());
+        }
+    }
+    let _before = Before(place, place.replace(watch));
+    work()
+}
+
+/// Does work whose [`stoppable`] parts are stopped by a watch.
+pub fn offer<T>(watch: Watch, work: impl FnOnce() -> T) -> T {
+    with(&OFFERED, Some(watch), work)
+}
+
+/// Does a part of the work that a watch stops; `None` is a part that nobody stops.
+pub fn under<T>(watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
+    with(&ACTIVE, watch, work)
+}
+
+/// The watch that stops the work in progress, for a part of it that another thread does.
+#[must_use]
+pub fn active() -> Option<Watch> {
+    ACTIVE.with_borrow(Clone::clone)
+}
+
+/// Stops the work here if nobody wants it any more.
+#[inline]
+pub fn look() {
+    let left = LEFT.get();
+    LEFT.set(left.saturating_sub(1));
+    if left == 0 {
+        look_closely();
+    }
+}
+
+#[cold]
+fn look_closely() {
+    LEFT.set(LOOKS);
+    let Some(watch) = active() else { return };
+    let now = Instant::now();
+    if LAST.get().is_some_and(|last| now.duration_since(last) < ASKED) {
+        return;
+    }
+    LAST.set(Some(now));
+    if !watch() {
+        resume_unwind(Box::new(Stopped));
+    }
+}
+
+/// Does work that may be stopped, by the watch that was offered.
+///
+/// # Errors
+/// It was stopped. What it changed is as it was left, so it should own all that it changes.
+pub fn stoppable<T>(work: impl FnOnce() -> T) -> Result<T, Stopped> {
+    let watched = || under(OFFERED.with_borrow(Clone::clone), work);
+    catch_unwind(AssertUnwindSafe(watched)).map_err(|payload| match is_stop(&*payload) {
+        true => Stopped,
+        false => resume_unwind(payload),
+    })
+}
+
+/// Whether a caught panic is the end of stopped work, for whoever catches panics on its way.
+#[must_use]
+pub fn is_stop(payload: &(dyn Any + Send)) -> bool {
+    payload.is::<Stopped>()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    fn endless() {
+        loop {
+            look();
+        }
+    }
+
+    #[test]
+    fn work_stops_when_its_watch_says_so() {
+        let asked = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&asked);
+        let watch: Watch = Arc::new(move || counted.fetch_add(1, Ordering::Relaxed) < 3);
+        assert_eq!(offer(watch, || stoppable(endless)), Err(Stopped));
+        assert_eq!(asked.load(Ordering::Relaxed), 4);
+        assert!(active().is_none(), "the watch is gone");
+        (0..1000).for_each(|_| look());
+    }
+
+    #[test]
+    fn other_panics_go_on() {
+        let caught = catch_unwind(|| stoppable(|| panic!("a defect")));
+        assert!(caught.is_err_and(|payload| !is_stop(&*payload)));
+    }
+}

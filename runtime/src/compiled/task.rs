@@ -1,0 +1,100 @@
+//! What is done with a model, and the programs that it takes: the one list of both.
+
+use jbt_ir::limits::MAX_VALUES;
+use jbt_lower::Lowering;
+use jbt_model::query::Query;
+
+use super::{Compiled, Need, PointScope};
+use crate::error::CompileError;
+use crate::kernel::{Purpose, grown};
+use crate::parallel::PoolWorkers;
+
+/// Something that is done with a compiled model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Task {
+    /// Answers at points, by an [`Evaluator`](crate::Evaluator).
+    Points(Query),
+    /// Meshes, by [`Polygonize`](crate::Polygonize).
+    Mesh,
+    /// Hits of rays, by a [`Tracer`](crate::Tracer); pictures ask for [`Query::SURFACE`].
+    Rays(Query),
+    /// Slices, by a [`Slicer`](crate::contour::Slicer).
+    Slices(Query),
+    /// Samples of a lattice, by a [`Sampler`](crate::sample::Sampler).
+    Samples(Query),
+    /// Measures, by a [`Solid`](crate::Solid).
+    Solid,
+}
+
+impl Task {
+    /// The programs that it takes.
+    pub(crate) fn needs(self) -> Vec<Need> {
+        let regional = |query| Need::Answers(PointScope::Regions, query);
+        let field = regional(Query::FIELD);
+        match self {
+            Self::Points(query) => vec![Need::Answers(PointScope::Anywhere, query)],
+            Self::Mesh => vec![Need::Ranges, field, regional(Query::GRADIENT), regional(Query::SURFACE)],
+            Self::Rays(query) => vec![Need::Ranges, field, regional(query)],
+            Self::Slices(query) if query == Query::FIELD => vec![Need::Ranges, field],
+            Self::Slices(query) => vec![regional(query), Need::Ranges, field],
+            Self::Samples(query) => vec![regional(query), Need::Ranges],
+            Self::Solid => vec![Need::Ranges, field],
+        }
+    }
+}
+
+/// By how many times passes may make a program longer: a logarithm has some 30 ops, its range and that of its
+/// gradient several times as many.
+const LARGEST_GROWTH: usize = 256;
+
+impl Compiled {
+    /// Those of some tasks that the model is too large for: one of their programs would be beyond a limit,
+    /// with what the task would say. No code is made. Programs of ordinary size are not looked at: they fit.
+    ///
+    /// # Errors
+    /// What lowering says: numbers that leave the range of f32, or a program that is beyond a limit before
+    /// any pass. No task can be done then.
+    pub fn too_large_for(&self, tasks: &[Task]) -> Result<Vec<(Task, CompileError)>, CompileError> {
+        jbt_ir::watch::stoppable(|| {
+            let lowering = Lowering::with(self.tree(), &PoolWorkers);
+            let mut looked: Vec<(Purpose, Option<CompileError>)> = Vec::new();
+            let mut refused = Vec::new();
+            for &task in tasks {
+                for need in task.needs() {
+                    let purpose = match need {
+                        Need::Answers(_, query) => Purpose::Answers(query),
+                        Need::Ranges => Purpose::Ranges,
+                    };
+                    if looked.iter().all(|(known, _)| *known != purpose) {
+                        looked.push((purpose, self.beyond(&lowering, need, purpose)?));
+                    }
+                    let of = looked.iter().find(|(known, _)| *known == purpose);
+                    if let Some((_, Some(error))) = of {
+                        refused.push((task, error.clone()));
+                        break;
+                    }
+                }
+            }
+            Ok(refused)
+        })?
+    }
+
+    /// Why a program cannot be had, if passes make it too long.
+    fn beyond(
+        &self,
+        lowering: &Lowering<'_>,
+        need: Need,
+        purpose: Purpose,
+    ) -> Result<Option<CompileError>, CompileError> {
+        let function = match need {
+            Need::Answers(_, query) => lowering.answers(query).map(|lowered| lowered.function),
+            Need::Ranges => lowering.ranges().map(|ranges| ranges.function),
+        };
+        let function = function.map_err(|list| CompileError::from(self.tree().diagnostics(list)))?;
+        if function.values.len() <= MAX_VALUES / LARGEST_GROWTH {
+            return Ok(None);
+        }
+        Ok(grown(function, purpose).err())
+    }
+}

@@ -1,0 +1,267 @@
+//! One block of a lattice as a part of the mesh, for whoever makes the blocks in other processes.
+//!
+//! ```text
+//!   +---------+---------+      blocks are cubes of 2^n cells, aligned to multiples of their edge
+//!   |    +----+----+    |      a block sees the cells around it, as far as its reach
+//!   |    |    x----|----x      x  a vertex that another block owns: the triangle has its name,
+//!   +----+----+----+----+         which is its cell in the whole lattice and its place among the cell's vertices
+//! ```
+//!
+//! Blocks follow one another in Morton order, as cells do, so the joined mesh has the bytes of the mesh that is
+//! made at once. What a block needs of others it computes by itself:
+//!
+//! | part of the mesh | cells around the block |
+//! |---|---|
+//! | flips of faces | along chains of pinched faces: up to the reach, or the block has to be asked again |
+//! | triangles, which are split by positions | one below |
+//! | normals that triangles decide | one above |
+
+mod bytes;
+mod chain;
+mod join;
+mod lattice_block;
+
+pub use join::{BlockError, join_blocks};
+pub use lattice_block::LatticeBlock;
+
+use std::collections::BTreeMap;
+
+use jbt_ir::limits::MAX_BRICKS;
+
+use super::brick::{Bricks, place as number_place};
+use super::crossing::{self, CrossedCell, Crossings, UnflippedCells};
+use super::divide::{self, BrickDivision};
+use super::error::{MAX_BRICK, MeshError};
+use super::field::Field;
+use super::indexed::{Attribute, Mesh};
+use super::lattice::Lattice;
+use super::options::Options;
+use super::report::Sides;
+use super::scope::DivisionScope;
+use super::vertex::batch::VertexSource;
+use super::{sample, surface, vertex};
+use crate::job::Hook;
+use crate::progress::{EACH, Progress};
+
+/// A vertex by its cell in the whole lattice, and its place among the vertices of that cell.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct VertexName {
+    /// The cell along x, y and z.
+    pub cell: [u32; 3],
+    /// Its number among the cell's vertices: 0 to 3.
+    pub sheet: u32,
+}
+
+/// The part of a mesh that belongs to one block of cells.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct MeshBlock {
+    /// Where it is, in units of blocks.
+    pub place: [u32; 3],
+    /// Its vertices and its triangles. An index beyond the vertices is that of a name in [`below`](Self::below),
+    /// which follow the vertices.
+    pub mesh: Mesh,
+    /// Vertices of other blocks that triangles have.
+    pub below: Vec<VertexName>,
+    /// Vertices that triangles of other blocks may have: those of the last cells along some axis, ascending by
+    /// their index.
+    pub seams: Vec<(VertexName, u32)>,
+    /// Whether the mesh has a rim here, at sides of the lattice.
+    pub is_open: bool,
+    /// The sides of the lattice with a point inside.
+    pub cut_sides: Sides,
+}
+
+/// What there is to do in a block.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct BlockWork {
+    /// Where it is, in units of blocks.
+    pub place: [u32; 3],
+    /// Boxes of up to 32 cells along an edge that the surface may cross.
+    pub boxes: u64,
+}
+
+/// The blocks of a lattice that the surface may cross, in Morton order.
+pub(crate) fn busy<F: Field>(
+    field: &F,
+    lattice: &Lattice,
+    (options, edge): (&Options, usize),
+    hook: Hook<'_>,
+) -> Result<Vec<BlockWork>, MeshError<F::Error>> {
+    options.check()?;
+    let progress = Progress::new(hook, EACH);
+    let options = Options { brick: Some(MAX_BRICK), thin_parts: false, ..options.clone() };
+    let scope = DivisionScope::Everything;
+    let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
+    progress.finish()?;
+    let mut work: Vec<BlockWork> = Vec::new();
+    for place in division.bricks.places {
+        let place = place.map(|index| index / (edge / MAX_BRICK).max(1) as u32);
+        match work.last_mut().filter(|last| last.place == place) {
+            Some(last) => last.boxes += 1,
+            None => work.push(BlockWork { place, boxes: 1 }),
+        }
+    }
+    Ok(work)
+}
+
+/// Meshes one block. The field has to be known in [`LatticeBlock::bounds`] of this reach.
+pub(crate) fn extract<F: Field>(
+    field: &F,
+    lattice: &Lattice,
+    (options, block, reach): (&Options, LatticeBlock, usize),
+    hook: Hook<'_>,
+) -> Result<MeshBlock, MeshError<F::Error>> {
+    options.check()?;
+    let progress = Progress::new(hook, EACH);
+    let options = Options { brick: None, thin_parts: false, ..options.clone() };
+    let own = block.cells(lattice, 0);
+    let known = block.cells(lattice, reach);
+    let scope = DivisionScope::Cells(known);
+    let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
+    let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
+    let samples = sample::sample(field, &bricks, &regions, &progress)?;
+    let mut found = crossing::look(&bricks, &samples, options.iso);
+    drop(samples);
+    let near = block.cells(lattice, 1);
+    if !chain::is_complete(&bricks, &found, near, known) {
+        return Err(MeshError::Reach { reach });
+    }
+    let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
+    keep(&bricks, &mut found, near);
+    let mut crossings = found.numbered(&bricks, flipped);
+    leave_quads_out(&bricks, &mut crossings, own);
+    if u32::try_from(crossings.vertex_count()).is_err() {
+        return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
+    }
+    let source =
+        VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
+    let (mut mesh, done) = vertex::finish(&source, &progress)?;
+    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
+    let range = bricks_of(&bricks, own);
+    let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
+    let doubtful: Vec<u32> =
+        done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
+    surface::repair_normals(&mut mesh, &bricks, &crossings, &doubtful);
+    progress.finish()?;
+    let mut cut_sides = crossings.cut;
+    cut_sides.add(boxes.cut);
+    let mut made = cut_out(&bricks, &crossings, &mesh, range);
+    (made.place, made.cut_sides, made.is_open) = (block.place(), cut_sides, crossings.is_open);
+    made.seams = seams(&bricks, &crossings, own);
+    Ok(made)
+}
+
+/// Whether a cell is in a box of cells.
+fn is_in(cell: [usize; 3], [low, end]: [[usize; 3]; 2]) -> bool {
+    (0..3).all(|axis| (low[axis]..end[axis]).contains(&cell[axis]))
+}
+
+/// Where a cell of a brick is in the lattice.
+fn cell_of(bricks: &Bricks, brick: usize, cell: &CrossedCell) -> [usize; 3] {
+    let (origin, place) = (bricks.origin(brick), number_place(cell.number));
+    [0, 1, 2].map(|axis| origin[axis] + place[axis])
+}
+
+/// The bricks of a block, which follow one another.
+fn bricks_of(bricks: &Bricks, own: [[usize; 3]; 2]) -> std::ops::Range<usize> {
+    let mut mine = (0..bricks.len()).filter(|&brick| is_in(bricks.origin(brick), own));
+    let Some(first) = mine.next() else { return 0..0 };
+    first..first + 1 + mine.count()
+}
+
+/// Leaves out the cells beyond a box.
+fn keep(bricks: &Bricks, found: &mut UnflippedCells, near: [[usize; 3]; 2]) {
+    let (mut cells, mut starts) = (Vec::with_capacity(found.cells.len()), vec![0]);
+    let mut kept: Vec<Vec<[f32; 8]>> = found.corners.iter().map(|_| Vec::new()).collect();
+    let mut corners = found.corners.iter().flatten();
+    for brick in 0..bricks.len() {
+        let of_group = &mut kept[brick / bricks.group()];
+        for cell in &found.cells[found.starts[brick]..found.starts[brick + 1]] {
+            let values = corners.next().expect("each cell has corners");
+            if is_in(cell_of(bricks, brick, cell), near) {
+                cells.push(*cell);
+                of_group.push(*values);
+            }
+        }
+        starts.push(cells.len());
+    }
+    (found.cells, found.starts, found.corners) = (cells, starts, kept);
+    found.suspects.clear();
+}
+
+/// Leaves out the quads of bricks below a block, of which some corners are not there.
+fn leave_quads_out(bricks: &Bricks, crossings: &mut Crossings, [low, _]: [[usize; 3]; 2]) {
+    let (mut before, mut sum) = (0, 0);
+    for brick in 0..bricks.len() {
+        let end = crossings.quads[brick + 1];
+        let origin = bricks.origin(brick);
+        if (0..3).all(|axis| origin[axis] >= low[axis]) {
+            sum += end - before;
+        }
+        before = end;
+        crossings.quads[brick + 1] = sum;
+    }
+}
+
+/// The vertices and triangles of some bricks, with the names of all other vertices.
+fn cut_out(bricks: &Bricks, crossings: &Crossings, mesh: &Mesh, range: std::ops::Range<usize>) -> MeshBlock {
+    let own = crossings.vertices[range.start]..crossings.vertices[range.end];
+    let triangles = 2 * crossings.quads[range.start]..2 * crossings.quads[range.end];
+    let mut names: BTreeMap<u32, u32> = BTreeMap::new();
+    let is_own = |vertex: u32| own.contains(&(vertex as usize));
+    let others = mesh.triangles[triangles.clone()].iter().flatten().filter(|&&vertex| !is_own(vertex));
+    names.extend(others.map(|&vertex| (vertex, 0)));
+    let mut below = Vec::with_capacity(names.len());
+    for (index, (&vertex, name)) in (0..).zip(&mut names) {
+        *name = own.len() as u32 + index;
+        below.push(name_of(bricks, crossings, vertex as usize));
+    }
+    let index = |vertex: u32| if is_own(vertex) { vertex - own.start as u32 } else { names[&vertex] };
+    let attribute = |attribute: &Attribute| Attribute {
+        name: attribute.name.clone(),
+        width: attribute.width,
+        values: attribute.values[own.start * attribute.width..own.end * attribute.width].to_vec(),
+    };
+    let mesh = Mesh {
+        positions: mesh.positions[own.clone()].to_vec(),
+        normals: mesh.normals[own.clone()].to_vec(),
+        attributes: mesh.attributes.iter().map(attribute).collect(),
+        triangles: mesh.triangles[triangles].iter().map(|triangle| triangle.map(index)).collect(),
+        ..Mesh::default()
+    };
+    MeshBlock { mesh, below, ..MeshBlock::default() }
+}
+
+/// The name of a vertex.
+fn name_of(bricks: &Bricks, crossings: &Crossings, vertex: usize) -> VertexName {
+    let brick = crossings.vertices.partition_point(|&first| first <= vertex) - 1;
+    let local = (vertex - crossings.vertices[brick]) as u32;
+    let cells = crossings.of(brick);
+    // A cell without a vertex has the number of the next vertex.
+    let cell = &cells[cells.partition_point(|cell| cell.vertex <= local) - 1];
+    let place = cell_of(bricks, brick, cell).map(|index| index as u32);
+    VertexName { cell: place, sheet: local - cell.vertex }
+}
+
+/// The vertices of a block that others may ask for: those of its last cells.
+fn seams(bricks: &Bricks, crossings: &Crossings, own: [[usize; 3]; 2]) -> Vec<(VertexName, u32)> {
+    let range = bricks_of(bricks, own);
+    let first = crossings.vertices[range.start];
+    let mut seams = Vec::new();
+    for brick in range {
+        let cells = crossings.of(brick);
+        let count = (crossings.vertices[brick + 1] - crossings.vertices[brick]) as u32;
+        for (index, cell) in cells.iter().enumerate() {
+            let place = cell_of(bricks, brick, cell);
+            if (0..3).all(|axis| place[axis] + 1 < own[1][axis]) {
+                continue;
+            }
+            let end = cells.get(index + 1).map_or(count, |next| next.vertex);
+            for vertex in cell.vertex..end {
+                let name = VertexName { cell: place.map(|index| index as u32), sheet: vertex - cell.vertex };
+                seams.push((name, (crossings.vertices[brick] - first) as u32 + vertex));
+            }
+        }
+    }
+    seams
+}

@@ -1,0 +1,401 @@
+//! Parts as solids: which one a point is in, and what two of them have in common.
+//!
+//! ```text
+//!  +-----+   +-----+      apart         no point of one is within the tolerance of a point of the other
+//!  +-----+-----+          touching      neither could be proven, down to boxes of the tolerance
+//!  +---+=+---+            overlapping   a box is inside of both
+//! ```
+//!
+//! What is said to be apart or to overlap is proven by ranges of both fields over boxes, so it holds for every
+//! value that a kernel gives there. A box is out of question where one of the fields is below the iso-value
+//! all over the box grown by the tolerance: two points of the parts that are nearer to each other than that
+//! would have the point between them in a box that is not.
+
+use jbt_model::check::CheckedTree;
+use jbt_model::combine::Intersection;
+use jbt_model::diagnostic::Diagnostics;
+
+use super::gap::{Gap, gap};
+use super::{Measure, MeasureError, Measures, RegionError, Solid, center, cut};
+use crate::boxes::{Box3, Divisible as _, MAX_PARTS, Range};
+use crate::compiler::Compiler;
+use crate::debug::brief_debug;
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::evaluator::Evaluator;
+use crate::points::Points;
+use crate::polygonize::Fineness;
+use crate::prune::Region;
+use crate::support::around_in_f32;
+
+/// Boxes that are open at once at most, while two parts are compared: with more, the answer is that of the
+/// boxes so far.
+const MAX_OPEN: usize = 1 << 14;
+
+/// Cells along the longest side of what two parts have in common, for its volume.
+const VOLUME_CELLS: usize = 64;
+
+/// The parts of a model, each compiled as a solid of its own, in the coordinates of the model.
+///
+/// ```
+/// use jbt::solid::{PartSolids, Relation};
+/// let text = br#"jbt 1 part "hub" { box { half (1 1 1) surface_radius 0.5 } }
+///     part "pin" { translate (1.5 0 0) { box { half (1 1 1) surface_radius 0.5 } } }"#;
+/// let tree = jbt::text::parse(text, &Default::default())?.check()?;
+/// let parts = PartSolids::new(&jbt::Compiler::new(), &tree)?;
+/// let Relation::Overlapping { volume, .. } = parts.relation(0, 1, 0.02)? else { panic!() };
+/// assert!(volume.low > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct PartSolids {
+    compiler: Compiler,
+    tree: CheckedTree,
+    solids: Vec<(String, Solid)>,
+}
+
+brief_debug!(PartSolids, "PartSolids", this: parts = this.solids.len());
+
+/// What two parts have to do with each other.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Relation {
+    /// Proven: no point of one is as near as this to a point of the other.
+    Apart {
+        /// The tolerance that was asked for.
+        more_than: f64,
+    },
+    /// Neither is proven: there may be points of both in boxes of this size. What they have in common is
+    /// thinner than about that, or they are as near.
+    Touching {
+        /// The longest side of the boxes that are left.
+        within: f64,
+        /// The middle of one of them, in the world.
+        at: [f64; 3],
+    },
+    /// Proven: a box is inside of both.
+    Overlapping {
+        /// A point of the largest such box, in the world.
+        at: [f64; 3],
+        /// What they have in common.
+        volume: super::Volume,
+    },
+}
+
+/// Two parts, by their places among the parts, and what is known of them.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct PartPair {
+    /// Their places.
+    pub parts: [usize; 2],
+    /// What they have to do with each other.
+    pub relation: Relation,
+}
+
+/// Why parts were not compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PartError {
+    /// The tolerance is not finite and greater than 0.
+    #[error("the tolerance must be a finite number greater than 0, and it is {tolerance}")]
+    Tolerance {
+        /// What was given.
+        tolerance: f64,
+    },
+    /// A part reaches to infinity.
+    #[error("the part `{name}` is unbounded: it needs a region")]
+    Unbounded {
+        /// Its name.
+        name: String,
+    },
+    /// A part could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// A field could not be evaluated.
+    #[error(transparent)]
+    Eval(#[from] EvalError),
+    /// What parts have in common could not be measured.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+impl Classified for PartError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Tolerance { .. } => ErrorKind::Argument,
+            Self::Unbounded { .. } => ErrorKind::Unbounded,
+            Self::Compile(error) => error.kind(),
+            Self::Eval(error) => error.kind(),
+            Self::Measure(error) => error.kind(),
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        match self {
+            Self::Compile(error) => error.diagnostics(),
+            Self::Measure(error) => error.diagnostics(),
+            Self::Tolerance { .. } | Self::Unbounded { .. } | Self::Eval(_) => None,
+        }
+    }
+}
+
+impl PartSolids {
+    /// The solids of all parts; of a model without parts there are none.
+    ///
+    /// # Errors
+    /// A part is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let solid = |(index, part): (usize, &jbt_model::check::PartRoot<'_>)| {
+            Ok((part.name.to_owned(), Solid::new(compiler, &tree.part(index))?))
+        };
+        let solids = tree.parts().iter().enumerate().map(solid).collect::<Result<_, CompileError>>()?;
+        Ok(Self { compiler: compiler.clone(), tree: tree.clone(), solids })
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.solids.len()
+    }
+
+    /// Whether the model has no parts.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.solids.is_empty()
+    }
+
+    /// The name of a part. Panics if there is no such part, as all that takes the place of one.
+    #[must_use]
+    pub fn name(&self, part: usize) -> &str {
+        &self.solids[part].0
+    }
+
+    /// A part as a solid.
+    #[must_use]
+    pub fn solid(&self, part: usize) -> &Solid {
+        &self.solids[part].1
+    }
+
+    /// The parts that a point is in, for each of some points.
+    ///
+    /// # Errors
+    /// A field could not be evaluated.
+    pub fn members(&self, points: &Points) -> Result<Vec<Vec<usize>>, EvalError> {
+        let mut members = vec![Vec::new(); points.len()];
+        for (part, (_, solid)) in self.solids.iter().enumerate() {
+            let field: &Evaluator = solid.evaluator();
+            let mut samples = field.samples();
+            field.par_eval(points, &mut samples)?;
+            for (member, &value) in members.iter_mut().zip(samples.field()) {
+                if value >= solid.iso {
+                    member.push(part);
+                }
+            }
+        }
+        Ok(members)
+    }
+
+    /// What two parts have to do with each other, where points that are as near as the tolerance, in units of
+    /// the model, count as touching.
+    ///
+    /// The volume of what they have in common is that of 64 cells along its longest side.
+    ///
+    /// # Errors
+    /// See [`PartError`].
+    pub fn relation(&self, a: usize, b: usize, tolerance: f64) -> Result<Relation, PartError> {
+        let tolerance = checked(tolerance)?;
+        let apart = Relation::Apart { more_than: f64::from(tolerance) };
+        let Some(common) = self.common(a, b, tolerance)? else { return Ok(apart) };
+        let mut search = PairSearch { solids: [self.solid(a), self.solid(b)], tolerance };
+        match search.run(common)? {
+            PairFound::Nothing => Ok(apart),
+            PairFound::Left(bounds) => {
+                Ok(Relation::Touching { within: f64::from(bounds.longest_side()), at: self.world(&bounds) })
+            }
+            PairFound::Both(bounds) => {
+                let roots = self.tree.parts();
+                let pair = self.tree.joined(&[roots[a].node, roots[b].node], Intersection {});
+                let solid = Solid::new(&self.compiler, &pair)?;
+                let settings = Measure { region: Some(common), fineness: Fineness::Resolution(VOLUME_CELLS) };
+                let mut volume = solid.measure(&settings).run()?.volume;
+                // The box that proves it counts, however small it is.
+                volume.low = volume.low.max(super::measure::volume_of(&bounds));
+                Ok(Relation::Overlapping { at: self.world(&bounds), volume })
+            }
+        }
+    }
+
+    /// All pairs of parts, in order.
+    ///
+    /// # Errors
+    /// Those of [`relation`](Self::relation).
+    pub fn relations(&self, tolerance: f64) -> Result<Vec<PartPair>, PartError> {
+        let pairs = (0..self.len()).flat_map(|a| (a + 1..self.len()).map(move |b| [a, b]));
+        pairs
+            .map(|[a, b]| Ok(PartPair { parts: [a, b], relation: self.relation(a, b, tolerance)? }))
+            .collect()
+    }
+
+    /// The distance between two parts: how far apart their nearest points are, 0 where they have points in
+    /// common. `None` if one of them is empty.
+    ///
+    /// The bracket is as narrow as the tolerance, unless the search gives up: parallel walls have so many
+    /// nearest points that it can be wider.
+    ///
+    /// # Errors
+    /// See [`PartError`].
+    pub fn distance(&self, a: usize, b: usize, tolerance: f64) -> Result<Option<Gap>, PartError> {
+        let tolerance = checked(tolerance)?;
+        let (Some(first), Some(second)) = (self.bounds(a)?, self.bounds(b)?) else { return Ok(None) };
+        let found = gap([self.solid(a), self.solid(b)], [first, second], tolerance)?;
+        Ok(found.map(|gap| Gap { points: gap.points.map(|point| self.tree.origin().world(point)), ..gap }))
+    }
+
+    /// The measures of a part: its volume between bounds, its area and its centre of mass.
+    ///
+    /// # Errors
+    /// Those of [`Solid::measure`]; an empty part has the volume 0.
+    pub fn measure(&self, part: usize, fineness: Fineness) -> Result<Measures, MeasureError> {
+        match self.solid(part).measure(&Measure { region: None, fineness }).run() {
+            Err(MeasureError::Region(RegionError::Empty)) => Ok(Measures::default()),
+            measured => measured,
+        }
+    }
+
+    /// A box around the support of a part; `None` if it is empty.
+    fn bounds(&self, part: usize) -> Result<Option<Box3>, PartError> {
+        match around_in_f32(self.solid(part).tree()) {
+            Ok(bounds) => Ok(Some(bounds)),
+            Err(crate::support::NoBox::Empty) => Ok(None),
+            Err(crate::support::NoBox::Unbounded) => {
+                Err(PartError::Unbounded { name: self.name(part).to_owned() })
+            }
+        }
+    }
+
+    /// Where both may have points that are as near as the tolerance.
+    fn common(&self, a: usize, b: usize, tolerance: f32) -> Result<Option<Box3>, PartError> {
+        let (Some(first), Some(second)) = (self.bounds(a)?, self.bounds(b)?) else { return Ok(None) };
+        let (first, second) = (grown(&first, tolerance), grown(&second, tolerance));
+        let common = Box3 {
+            low: [0, 1, 2].map(|axis| first.low[axis].max(second.low[axis])),
+            high: [0, 1, 2].map(|axis| first.high[axis].min(second.high[axis])),
+        };
+        Ok(common.is_full().then_some(common))
+    }
+
+    fn world(&self, bounds: &Box3) -> [f64; 3] {
+        self.tree.origin().world(center(bounds).map(f64::from))
+    }
+}
+
+fn checked(tolerance: f64) -> Result<f32, PartError> {
+    let rounded = tolerance as f32;
+    if rounded > 0.0 && rounded.is_finite() { Ok(rounded) } else { Err(PartError::Tolerance { tolerance }) }
+}
+
+/// A box with so much around it, rounded outwards.
+fn grown(bounds: &Box3, margin: f32) -> Box3 {
+    Box3 {
+        low: bounds.low.map(|side| (side - margin).next_down().max(f32::MIN)),
+        high: bounds.high.map(|side| (side + margin).next_up().min(f32::MAX)),
+    }
+}
+
+/// What a search for points of both has found.
+enum PairFound {
+    /// There are none.
+    Nothing,
+    /// A box that may have some, of the smallest.
+    Left(Box3),
+    /// A box inside of both, of the largest.
+    Both(Box3),
+}
+
+/// Boxes that may have points of both, level by level.
+struct PairSearch<'a> {
+    solids: [&'a Solid; 2],
+    tolerance: f32,
+}
+
+/// A box, and what is known of it grown by the tolerance, for both fields.
+struct PairBox {
+    bounds: Box3,
+    regions: [Region; 2],
+}
+
+impl PairSearch<'_> {
+    fn run(&mut self, whole: Box3) -> Result<PairFound, EvalError> {
+        let around = grown(&whole, self.tolerance);
+        let region = |solid: &Solid| solid.pruner.region(around);
+        let regions = [region(self.solids[0])?, region(self.solids[1])?];
+        let mut open = vec![PairBox { bounds: whole, regions }];
+        while let Some(first) = open.first() {
+            let size = first.bounds.longest_side();
+            if size <= self.tolerance || open.len() > MAX_OPEN {
+                return Ok(PairFound::Left(first.bounds));
+            }
+            let mut next = Vec::new();
+            for parent in &open {
+                let parts = cut(&parent.bounds, halves(&parent.bounds));
+                if parts.len() == 1 {
+                    return Ok(PairFound::Left(parent.bounds));
+                }
+                if let Some(both) = self.expand(parent, &parts, &mut next)? {
+                    return Ok(PairFound::Both(both));
+                }
+            }
+            open = next;
+        }
+        Ok(PairFound::Nothing)
+    }
+
+    /// Opens the parts of a box that may have points of both; one that is inside of both ends the search.
+    fn expand(
+        &self,
+        parent: &PairBox,
+        parts: &[Box3],
+        next: &mut Vec<PairBox>,
+    ) -> Result<Option<Box3>, EvalError> {
+        let around: Vec<Box3> = parts.iter().map(|part| grown(part, self.tolerance)).collect();
+        let mut is_open = vec![true; parts.len()];
+        for (solid, region) in self.solids.iter().zip(&parent.regions) {
+            let ranges = ranges(solid, region, &around)?;
+            for (open, range) in is_open.iter_mut().zip(ranges) {
+                *open &= solid.side(range) != Some(false);
+            }
+        }
+        let pick = |boxes: &[Box3]| -> Vec<Box3> {
+            boxes.iter().zip(&is_open).filter(|(_, open)| **open).map(|(bounds, _)| *bounds).collect()
+        };
+        let (parts, around) = (pick(parts), pick(&around));
+        let mut is_inside = vec![true; parts.len()];
+        for (solid, region) in self.solids.iter().zip(&parent.regions) {
+            for (inside, range) in is_inside.iter_mut().zip(ranges(solid, region, &parts)?) {
+                *inside &= solid.side(range) == Some(true);
+            }
+        }
+        if let Some(place) = is_inside.iter().position(|inside| *inside) {
+            return Ok(Some(parts[place]));
+        }
+        let [mut first, mut second] = [Vec::new(), Vec::new()];
+        self.solids[0].pruner.narrow(&parent.regions[0], &around, &mut first)?;
+        self.solids[1].pruner.narrow(&parent.regions[1], &around, &mut second)?;
+        let regions = first.into_iter().zip(second);
+        next.extend(parts.iter().zip(regions).map(|(&bounds, (a, b))| PairBox { bounds, regions: [a, b] }));
+        Ok(None)
+    }
+}
+
+/// In how many parts a box is cut along each axis: sides that are much shorter than the longest stay whole.
+pub(super) fn halves(bounds: &Box3) -> [usize; 3] {
+    let longest = bounds.longest_side();
+    [0, 1, 2].map(|axis| if bounds.high[axis] - bounds.low[axis] > 0.5 * longest { 2 } else { 1 })
+}
+
+/// The ranges of a field over up to [`MAX_PARTS`] boxes.
+pub(super) fn ranges(solid: &Solid, region: &Region, boxes: &[Box3]) -> Result<Vec<Range>, EvalError> {
+    debug_assert!(boxes.len() <= MAX_PARTS);
+    let mut ranges = vec![crate::boxes::ANYTHING; boxes.len()];
+    if !boxes.is_empty() {
+        solid.pruner.ranges(region, boxes, &mut ranges)?;
+    }
+    Ok(ranges)
+}
