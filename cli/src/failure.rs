@@ -16,7 +16,7 @@ use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, SourceText, escape};
 use jbt::{Classified, ErrorKind};
 
 use crate::message::Message;
-use crate::points::PointsError;
+use crate::points::PointTableError;
 use crate::signals;
 
 /// Why a command did not do its work.
@@ -130,12 +130,12 @@ impl Failure {
     }
 }
 
-impl From<PointsError> for Failure {
-    fn from(error: PointsError) -> Self {
+impl From<PointTableError> for Failure {
+    fn from(error: PointTableError) -> Self {
         match error {
-            PointsError::Io { name, error } => Self::io("read", name, error),
-            PointsError::Limit(message) => Self::Limit(message),
-            PointsError::Text { name, rendered } => {
+            PointTableError::Io { name, error } => Self::io("read", name, error),
+            PointTableError::Limit(message) => Self::Limit(message),
+            PointTableError::Text { name, rendered } => {
                 Self::Input { messages: vec![Message::rendered(Severity::Error, &name, rendered)] }
             }
         }

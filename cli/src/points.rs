@@ -14,7 +14,7 @@ const MAX_LINE: usize = 1 << 20;
 
 /// Why there are no more points.
 #[derive(Debug)]
-pub enum PointsError {
+pub enum PointTableError {
     /// The file could not be read.
     Io {
         /// Its name.
@@ -54,7 +54,7 @@ struct Word {
 
 impl<R: BufRead> PointReader<R> {
     /// Reads the header.
-    pub fn new(reader: R, name: String) -> Result<Self, PointsError> {
+    pub fn new(reader: R, name: String) -> Result<Self, PointTableError> {
         let mut points = Self {
             reader,
             name,
@@ -98,7 +98,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The next points, at most `limit`; none at the end.
-    pub fn batch(&mut self, limit: usize) -> Result<Vec<[f64; 3]>, PointsError> {
+    pub fn batch(&mut self, limit: usize) -> Result<Vec<[f64; 3]>, PointTableError> {
         let mut points = Vec::new();
         while points.len() < limit && self.next_line()? {
             points.push(self.point()?);
@@ -107,7 +107,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The point of the line in the buffer.
-    fn point(&self) -> Result<[f64; 3], PointsError> {
+    fn point(&self) -> Result<[f64; 3], PointTableError> {
         let words = self.words()?;
         let mut point = [0.0; 3];
         for (axis, (number, &column)) in point.iter_mut().zip(&self.columns).enumerate() {
@@ -126,11 +126,11 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// Brings the next line that is not blank into the buffer, without its end; false at the end of the text.
-    fn next_line(&mut self) -> Result<bool, PointsError> {
+    fn next_line(&mut self) -> Result<bool, PointTableError> {
         loop {
             self.buffer.clear();
             let read =
-                self.read_line().map_err(|error| PointsError::Io { name: self.name.clone(), error })?;
+                self.read_line().map_err(|error| PointTableError::Io { name: self.name.clone(), error })?;
             if read == 0 {
                 return Ok(false);
             }
@@ -138,7 +138,9 @@ impl<R: BufRead> PointReader<R> {
             self.bytes += read as u64;
             if self.buffer.len() > MAX_LINE {
                 let place = format!("{}:{}", escape(&self.name), self.line);
-                return Err(PointsError::Limit(format!("{place}: a line is longer than {MAX_LINE} bytes")));
+                return Err(PointTableError::Limit(format!(
+                    "{place}: a line is longer than {MAX_LINE} bytes"
+                )));
             }
             if !self.buffer.trim_ascii().is_empty() {
                 return Ok(true);
@@ -175,7 +177,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The fields of the line in the buffer.
-    fn words(&self) -> Result<Vec<Word>, PointsError> {
+    fn words(&self) -> Result<Vec<Word>, PointTableError> {
         let line = &self.buffer;
         let mut words = Vec::new();
         let mut at = 0;
@@ -216,11 +218,11 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// A located error in the line of the buffer, between these bytes of it.
-    fn error(&self, start: usize, end: usize, message: &str) -> PointsError {
+    fn error(&self, start: usize, end: usize, message: &str) -> PointTableError {
         let span = Span::new(start, end);
         let source = Source { name: &self.name, text: &self.buffer };
         let rendered = source.render_from(self.line.max(1), &Diagnostic::error(Some(span), message));
-        PointsError::Text { name: self.name.clone(), rendered }
+        PointTableError::Text { name: self.name.clone(), rendered }
     }
 }
 
@@ -254,9 +256,9 @@ mod tests {
                 all.extend(batch);
             }
         };
-        all().map_err(|error: PointsError| match error {
-            PointsError::Text { rendered, .. } => rendered,
-            PointsError::Io { .. } | PointsError::Limit(_) => panic!("{error:?}"),
+        all().map_err(|error: PointTableError| match error {
+            PointTableError::Text { rendered, .. } => rendered,
+            PointTableError::Io { .. } | PointTableError::Limit(_) => panic!("{error:?}"),
         })
     }
 
@@ -319,6 +321,6 @@ mod tests {
     #[test]
     fn a_line_without_end_is_not_kept() {
         let reader = io::BufReader::new(io::repeat(b','));
-        assert!(matches!(PointReader::new(reader, "p".to_owned()), Err(PointsError::Limit(_))));
+        assert!(matches!(PointReader::new(reader, "p".to_owned()), Err(PointTableError::Limit(_))));
     }
 }

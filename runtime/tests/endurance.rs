@@ -85,6 +85,18 @@ fn eight_threads_ask_two_models_that_change() {
     let compilers = [Compiler::new(), Compiler::new()];
     let (compiled, is_over) = (AtomicU64::new(0), AtomicBool::new(false));
     let begin = Instant::now();
+    let ask = |thread: usize| {
+        let mut version = thread;
+        while begin.elapsed() < lasts {
+            let (model, at) = (version % 2, version / 2 % 9);
+            let compiler = if version.is_multiple_of(5) { &Compiler::new() } else { &compilers[model] };
+            let evaluator = compiler.evaluator(&versions[model][at], Query::ALL).expect("it compiles");
+            let given = answers(&evaluator, &points);
+            assert_same(&expected[model][at].planes(), &given.planes(), "another answer");
+            compiled.fetch_add(1, Ordering::Relaxed);
+            version += 7;
+        }
+    };
     std::thread::scope(|scope| {
         let look = scope.spawn(|| {
             let mut looks = 0_u64;
@@ -94,18 +106,7 @@ fn eight_threads_ask_two_models_that_change() {
             }
             looks
         });
-        let ask = &|thread: usize| {
-            let mut version = thread;
-            while begin.elapsed() < lasts {
-                let (model, at) = (version % 2, version / 2 % 9);
-                let compiler = if version.is_multiple_of(5) { &Compiler::new() } else { &compilers[model] };
-                let evaluator = compiler.evaluator(&versions[model][at], Query::ALL).expect("it compiles");
-                let given = answers(&evaluator, &points);
-                assert_same(&expected[model][at].planes(), &given.planes(), "another answer");
-                compiled.fetch_add(1, Ordering::Relaxed);
-                version += 7;
-            }
-        };
+        let ask = &ask;
         let asking: Vec<_> = (0..8).map(|thread| scope.spawn(move || ask(thread))).collect();
         let outcomes: Vec<_> = asking.into_iter().map(std::thread::ScopedJoinHandle::join).collect();
         is_over.store(true, Ordering::Relaxed);

@@ -87,10 +87,10 @@ fn read_points(bytes: &[u8]) {
     };
     match all() {
         Ok(read) => assert_eq!(read, bytes.len() as u64, "all bytes are read"),
-        Err(points::PointsError::Text { rendered, .. }) => {
+        Err(points::PointTableError::Text { rendered, .. }) => {
             assert!(rendered.starts_with("p.csv:"), "{rendered}")
         }
-        Err(points::PointsError::Limit(_)) => {}
-        Err(points::PointsError::Io { error, .. }) => panic!("bytes can be read: {error}"),
+        Err(points::PointTableError::Limit(_)) => {}
+        Err(points::PointTableError::Io { error, .. }) => panic!("bytes can be read: {error}"),
     }
 }
