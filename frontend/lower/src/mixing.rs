@@ -18,7 +18,7 @@ mod group;
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain, FunctionBuilder, InstKind, Value};
+use jbt_ir::{Domain, FunctionBuilder, InstKind, Origin, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
@@ -211,7 +211,10 @@ impl State {
                 }
             }
             ReduceCode::Step(code) => {
+                let origin = if code.creases() { Origin::CREASE } else { d.origin() };
+                let before = d.set_origin(origin);
                 let pair = code.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
+                d.set_origin(before);
                 self.field[0] = pair.field;
                 let Some(known) = self.total else { return };
                 let (zero, one) = (d.constant(0.0), d.constant(1.0));
@@ -247,7 +250,9 @@ impl State {
     fn win(&mut self, d: &mut FunctionBuilder, extreme: Extreme, operand: &Answer, order: Option<Value>) {
         let best = self.field[0];
         if self.order.is_none() && self.groups.is_empty() {
+            let before = d.set_origin(Origin::CREASE);
             self.field[0] = extreme.step(d, best, operand.field);
+            d.set_origin(before);
             return;
         }
         let takes = takes(d, extreme, best, operand.field, self.order.zip(order));
@@ -411,7 +416,9 @@ pub(super) fn difference(
     iso2: Value,
     defaults: &[Vec<Value>],
 ) -> Answer {
+    let before = d.set_origin(Origin::CREASE);
     let (field, cuts) = jbt_model::combine::difference::emit(d, left.field, right.field, iso2);
+    d.set_origin(before);
     let one = d.constant(1.0);
     let groups = left.groups.iter().zip(&right.groups).zip(defaults).map(|((left, right), default)| {
         let decided: Vec<Value> =

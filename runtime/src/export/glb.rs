@@ -51,6 +51,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: None,
 };
 

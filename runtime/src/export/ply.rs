@@ -24,6 +24,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
     far: FarMeshes::Digits,
+    splits: true,
+    materials: false,
     unit: None,
 };
 

@@ -29,6 +29,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: None,
     attributes: None,
     far: FarMeshes::Rounded,
+    splits: false,
+    materials: false,
     unit: None,
 };
 

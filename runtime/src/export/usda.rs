@@ -21,6 +21,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`st`"),
     attributes: Some("`primvars`, decimals"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: Some(LengthUnit::Metre),
 };
 

@@ -7,7 +7,9 @@ mod margin;
 mod normal;
 mod room;
 mod seed;
+mod sharp;
 mod sheet;
+pub(super) mod side;
 mod start;
 mod suspect;
 mod wall;
@@ -65,6 +67,7 @@ pub(crate) fn finish<F: Field>(
         normals: vec![[0.0; 3]; count],
         attributes: attributes.into_iter().map(attribute).collect(),
         triangles: Vec::new(),
+        creases: Default::default(),
     };
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
@@ -115,7 +118,9 @@ fn finish_group<F: Field>(
             continue;
         }
         batch.start(source, brick, range.len());
-        done = done.and(batch.evaluate(source, brick, widths.iter().sum())?);
+        let mut of_brick = batch.evaluate(source, brick, widths.iter().sum())?;
+        of_brick.sharp.iter_mut().for_each(|sharp| sharp.vertex += starts[brick] as u32);
+        done = done.and(of_brick);
         batch.write(&mut target, range, widths);
         done.doubtful.extend(batch.doubtful.iter().map(|&vertex| (starts[brick] + vertex) as u32));
     }
@@ -150,7 +155,9 @@ impl VertexBatch {
         };
         let again = if options.pulls == 0 { Done::default() } else { self.look_again(source, brick)? };
         self.separate();
-        Ok(done.and(again))
+        let done = done.and(again);
+        let is_sharp = options.sharp && options.pulls > 0 && field.is_sharp();
+        if is_sharp { Ok(done.and(self.sharpen(source, brick)?)) } else { Ok(done) }
     }
 
     /// Writes the vertices to their range of the target, and records vertices without a normal.

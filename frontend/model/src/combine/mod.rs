@@ -181,6 +181,11 @@ macro_rules! operators {
                 match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ }
             }
 
+            /// See [`Step::CREASES`].
+            pub const fn creases(self) -> bool {
+                match self { $( Self::$step(_) => <$step as Step>::CREASES, )+ }
+            }
+
             /// See [`Step::rule`].
             fn rule(self, non_negative: bool) -> Rule {
                 match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ }
