@@ -8,6 +8,7 @@ mod scene;
 mod space;
 mod switch;
 mod tools;
+mod wanted;
 mod words;
 mod work;
 
@@ -15,13 +16,15 @@ pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
-pub use scene::{SceneArguments, SceneOptions};
+pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
 pub use switch::Switch;
 pub use tools::{
     CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, ManArguments, ShowArguments,
     StatsArguments,
 };
+pub use wanted::Wanted;
+use wanted::WantedParser;
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
@@ -35,7 +38,7 @@ use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
 use crate::shade::Ramp;
-use words::{ValueRange, positive, queries, range, simplify, words};
+use words::{ValueRange, positive, range, simplify, words};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -264,9 +267,9 @@ pub struct SampleArguments {
     /// Where the samples go.
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -284,9 +287,9 @@ pub struct EvalArguments {
     /// CSV file of the points; `-` is the standard input
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
-    /// The answers wanted
-    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
-    pub query: Query,
+    /// The answers wanted, and names of attribute groups if not all are: field,color
+    #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,

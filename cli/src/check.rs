@@ -1,12 +1,13 @@
 //! `jbt check`: everything that is wrong with scenes, or a few lines about each that nothing is wrong with.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use jbt::diagnostic::escape;
 use jbt::tree::Bounds;
 use jbt::tree::NodeKind;
-use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Query};
+use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Parameter, Query};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};
@@ -107,12 +108,15 @@ impl Checked {
         let bounds =
             (!support.is_empty() && support.is_finite()).then(|| [support.low(), support.high()].concat());
         let attribute = |group: &AttributeGroup| json!({ "name": &*group.name, "width": group.width(), "mixing": group.mixing.name() });
+        let controls = tree.parameters().iter().map(|p| (p.name().to_owned(), control(p)));
         json!({
             "nodes": tree.nodes().len(),
             "leaves": self.leaves(),
             "instances": self.instances,
             "iso": tree.iso(),
             "parameters": parameters.collect::<Map<String, Value>>(),
+            "names": names(tree),
+            "controls": controls.collect::<Map<String, Value>>(),
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
@@ -132,18 +136,62 @@ impl Checked {
         }
         let _ =
             writeln!(out, "  bounds       {}{}", bounds(tree.support()), lattice::origin_line(tree.origin()));
+        let names = names(tree);
+        if !names.is_empty() {
+            let _ = writeln!(out, "  names        {}", shortened(&names));
+        }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
         out
     }
 }
 
+/// The names of the nodes, each once.
+fn names(tree: &CheckedTree) -> BTreeSet<&str> {
+    tree.names().collect()
+}
+
+/// The first of these names, and how many more there are.
+fn shortened(names: &BTreeSet<&str>) -> String {
+    const SHOWN: usize = 20;
+    let mut shown: Vec<String> = names.iter().take(SHOWN).map(|name| escape(name)).collect();
+    if names.len() > SHOWN {
+        shown.push(format!("and {} more", names.len() - SHOWN));
+    }
+    shown.join(", ")
+}
+
+/// What an interface needs to know of a parameter besides its value: `fixed` ones take reading the scene
+/// again.
+fn control(parameter: &Parameter) -> Value {
+    let range = parameter.range();
+    json!({
+        "default": parameter.default(),
+        "low": range.map(|range| range.low),
+        "high": range.map(|range| range.high),
+        "step": range.and_then(|range| range.step),
+        "label": parameter.label(),
+        "fixed": parameter.fixture().is_some(),
+    })
+}
+
+/// The range of a parameter, if it has one.
+fn in_range(parameter: &Parameter) -> String {
+    let step = |step: f64| format!(" step {step}");
+    parameter.range().map_or_else(String::new, |range| {
+        format!(" in {} .. {}{}", range.low, range.high, range.step.map_or_else(String::new, step))
+    })
+}
+
 /// The parameters, and of derived and set ones their present values.
 fn parameters(tree: &CheckedTree) -> String {
     const SHOWN: usize = 20;
     let all = tree.parameters();
-    let mut shown: Vec<String> =
-        all.iter().take(SHOWN).map(|p| format!("{} = {}", escape(p.name()), p.value())).collect();
+    let mut shown: Vec<String> = all
+        .iter()
+        .take(SHOWN)
+        .map(|p| format!("{} = {}{}", escape(p.name()), p.value(), in_range(p)))
+        .collect();
     if all.len() > SHOWN {
         shown.push(format!("and {} more", all.len() - SHOWN));
     }

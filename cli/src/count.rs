@@ -18,7 +18,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use jbt::diagnostic::Source;
+use jbt::diagnostic::SourceText;
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, SupportCounts, walks};
 use jbt::tree::NodeKind;
@@ -162,18 +162,18 @@ struct CountedLeaf {
 
 fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     let uses = tree.asked();
-    let lines = Lines::new(scene.source());
+    let lines = Lines::new(scene.text());
     let leaf = |(index, node): (usize, &jbt::tree::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(CountedLeaf {
             node: index as u32,
             kind: primitive.skeleton.kind().name(),
-            place: node.span.map(|span| lines.position(span.start as usize)),
+            place: node.span.and_then(|span| lines.position(span.start as usize)),
             uses: uses[index],
         }),
         NodeKind::Particles(particles) => Some(CountedLeaf {
             node: index as u32,
             kind: "particles",
-            place: node.span.map(|span| lines.position(span.start as usize)),
+            place: node.span.and_then(|span| lines.position(span.start as usize)),
             uses: uses[index].saturating_mul(particles.len() as u64),
         }),
         NodeKind::Combine(_)
@@ -188,23 +188,22 @@ fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     leaves
 }
 
-/// Line starts of a text: places of many nodes without reading the text again for each.
+/// Line starts of a scene's own text: places of many nodes without reading the text again for each.
 struct Lines<'a> {
     text: &'a [u8],
     starts: Vec<usize>,
 }
 
 impl<'a> Lines<'a> {
-    fn new(source: Source<'a>) -> Self {
-        Self { text: source.text, starts: source.line_starts() }
+    fn new(text: &'a SourceText) -> Self {
+        Self { text: text.text(), starts: text.source().line_starts() }
     }
 
-    /// Line and column, counted from 1; the column counts characters.
-    fn position(&self, byte: usize) -> (usize, usize) {
-        let byte = byte.min(self.text.len());
+    /// Line and column, counted from 1; the column counts characters. Nothing in a file that is included.
+    fn position(&self, byte: usize) -> Option<(usize, usize)> {
         let line = self.starts.partition_point(|&start| start <= byte);
-        let before = &self.text[self.starts[line - 1]..byte];
-        (line, String::from_utf8_lossy(before).chars().count() + 1)
+        let before = self.text.get(self.starts[line - 1]..byte)?;
+        Some((line, String::from_utf8_lossy(before).chars().count() + 1))
     }
 }
 

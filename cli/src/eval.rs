@@ -32,8 +32,8 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
-    let tree = scene.check()?;
-    let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query)?;
+    let tree = scene.check_for(&arguments.query)?;
+    let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query.query)?;
     let threads = Threads::new(arguments.threads);
     if is_standard(&arguments.points) {
         return stream(

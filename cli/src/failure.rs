@@ -12,7 +12,7 @@
 use std::fmt;
 use std::io;
 
-use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
+use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, SourceText, escape};
 use jbt::{Classified, ErrorKind};
 
 use crate::message::Message;
@@ -66,8 +66,8 @@ impl Failure {
     }
 
     /// Messages about a file.
-    pub fn diagnostics(source: &Source<'_>, diagnostics: &[Diagnostic]) -> Self {
-        Self::Input { messages: diagnostics.iter().map(|one| Message::new(source, one)).collect() }
+    pub fn diagnostics(text: &SourceText, diagnostics: &[Diagnostic]) -> Self {
+        Self::Input { messages: diagnostics.iter().map(|one| Message::in_text(text, one)).collect() }
     }
 
     /// A scene that could not be read.
@@ -76,7 +76,7 @@ impl Failure {
             return Self::io("read", name, io::Error::new(cause.kind(), cause.to_string()));
         }
         if let Some(text) = error.source_text() {
-            return Self::diagnostics(&text.source(), error);
+            return Self::diagnostics(text, error);
         }
         // Without a text it is about the file as a whole: its length, its ending, what was defined.
         let message = |one: &Diagnostic| {
@@ -90,13 +90,13 @@ impl Failure {
     }
 
     /// A task that was not done for a scene.
-    pub fn task(source: &Source<'_>, error: &impl Classified) -> Self {
+    pub fn task(text: &SourceText, error: &impl Classified) -> Self {
         if let Some(diagnostics) = error.diagnostics() {
-            return Self::diagnostics(source, diagnostics);
+            return Self::diagnostics(text, diagnostics);
         }
         let message = error.to_string();
         match error.kind() {
-            ErrorKind::Model => Self::diagnostics(source, &[Diagnostic::error(None, message)]),
+            ErrorKind::Model => Self::diagnostics(text, &[Diagnostic::error(None, message)]),
             ErrorKind::Argument => Self::Usage(message),
             ErrorKind::Unbounded => Self::Usage(format!("{message}; --region gives it one")),
             ErrorKind::Limit => Self::Limit(message),

@@ -25,7 +25,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     }
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
-    let options = options(arguments, destination.kind)?;
+    let mut options = options(arguments, destination.kind)?;
     let settings = Polygonize {
         thin_parts: !arguments.no_thin,
         verify: arguments.verify,
@@ -35,6 +35,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
+    options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
@@ -94,8 +95,8 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
             "a .{format} file has no materials that --palette could be about"
         )));
     }
-    let MeshArguments { up, colors, unit, palette, .. } = *arguments;
-    Ok(ExportOptions { up, colors, unit, palette })
+    let &MeshArguments { up, colors, unit, palette, .. } = arguments;
+    Ok(ExportOptions { up, colors, unit, palette, name: None })
 }
 
 /// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.

@@ -1,6 +1,6 @@
 //! A message about a file, for people and for machines.
 
-use jbt::diagnostic::{Diagnostic, Severity, Source};
+use jbt::diagnostic::{Diagnostic, Severity, Source, SourceText};
 use serde_json::{Value, json};
 
 /// A message about a file.
@@ -18,12 +18,20 @@ pub struct Message {
     place: Option<[(usize, usize); 2]>,
     message: String,
     hint: Option<String>,
+    /// The calls and loops that the place stands in.
+    notes: Vec<String>,
 }
 
 impl Message {
-    /// A diagnostic about a text.
-    pub fn new(source: &Source<'_>, diagnostic: &Diagnostic) -> Self {
-        let Diagnostic { severity, span, message, help } = diagnostic;
+    /// A diagnostic about a text, or about one that it includes.
+    pub fn in_text(text: &SourceText, diagnostic: &Diagnostic) -> Self {
+        let (source, located) = text.located(diagnostic);
+        Self::new(&source, &located)
+    }
+
+    /// A diagnostic about one text.
+    fn new(source: &Source<'_>, diagnostic: &Diagnostic) -> Self {
+        let Diagnostic { severity, span, message, help, notes } = diagnostic;
         let place = span.map(|span| [span.start, span.end.max(span.start)]);
         Self {
             severity: *severity,
@@ -35,6 +43,7 @@ impl Message {
                 .map(|place| place.map(|byte| source.position(byte as usize))),
             message: message.clone(),
             hint: help.clone(),
+            notes: notes.iter().map(|note| note.message.clone()).collect(),
         }
     }
 
@@ -47,6 +56,7 @@ impl Message {
             place: None,
             message: rendered.clone(),
             hint: None,
+            notes: Vec::new(),
             rendered,
         }
     }
@@ -64,6 +74,7 @@ impl Message {
             "end": end,
             "message": self.message,
             "hint": self.hint,
+            "notes": self.notes,
         })
     }
 }

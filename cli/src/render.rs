@@ -6,6 +6,7 @@ use jbt::ModelOrigin;
 use jbt::diagnostic::escape;
 use jbt::export::{PngEffort, write_png_with};
 use jbt::render::{Camera, Quality, Render, RenderMode, RenderReport, Rendered, Stance, View};
+use jbt::tree::OWNER;
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
@@ -23,7 +24,10 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let mut settings = settings(arguments)?;
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
-    let tree = scene.check()?;
+    let tree = match &settings.mode {
+        RenderMode::Attribute(name) if is_owner(&arguments.mode) => scene.owner_colors(name)?,
+        _ => scene.check()?,
+    };
     settings.region = arguments.region.map(|region| lattice::local(region, tree.origin()));
     let compiler = arguments.work.compiler()?;
 
@@ -91,6 +95,11 @@ fn settings(arguments: &RenderArguments) -> Result<Render, Failure> {
     })
 }
 
+/// Whether some words ask for the leaf that decides.
+fn is_owner(words: &[String]) -> bool {
+    matches!(words, [word] if word == OWNER)
+}
+
 /// The mode that some words name.
 fn mode(words: &[String]) -> Result<RenderMode, Failure> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -99,10 +108,11 @@ fn mode(words: &[String]) -> Result<RenderMode, Failure> {
         ["normal"] => Ok(RenderMode::Normal),
         ["depth"] => Ok(RenderMode::Depth),
         ["evaluations"] => Ok(RenderMode::Evaluations),
+        ["owner"] => Ok(RenderMode::Attribute(OWNER.to_owned())),
         ["attribute", name] => Ok(RenderMode::Attribute(name.to_owned())),
         ["attribute"] => Err(Failure::Usage("--mode attribute needs the name of an attribute".to_owned())),
         _ => Err(Failure::Usage(format!(
-            "there is no mode `{}`; there are shaded, normal, depth, attribute NAME and evaluations",
+            "there is no mode `{}`; there are shaded, normal, depth, owner, attribute NAME and evaluations",
             words.join(" ")
         ))),
     }

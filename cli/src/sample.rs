@@ -22,10 +22,11 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
-    let tree = scene.check()?;
+    let tree = scene.check_for(&arguments.query)?;
     let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;
-    let sampler = Sampler::new(&compiler, &tree, arguments.query).map_err(|error| scene.failure(&error))?;
+    let sampler =
+        Sampler::new(&compiler, &tree, arguments.query.query).map_err(|error| scene.failure(&error))?;
     let mut progress = ProgressLine::new("sampling", quiet);
     match destination.kind {
         ArrayKind::Npy => {

@@ -1,11 +1,13 @@
 //! Loading scenes: a path or the standard input becomes a model, whatever its format.
 
 use std::io;
+use std::sync::Arc;
 
-use jbt::diagnostic::{Severity, Source, SourceText};
-use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query};
+use jbt::diagnostic::{Diagnostic, Severity, SourceText};
+use jbt::text::files::Files;
+use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
-use crate::arguments::SceneArguments;
+use crate::arguments::{PartArguments, SceneArguments, Wanted};
 use crate::failure::Failure;
 use crate::message::Message;
 use crate::output::{highlight, tell};
@@ -26,7 +28,12 @@ impl LoadedScene {
     /// Reads and parses a scene.
     pub fn load(arguments: &SceneArguments) -> Result<Self, Failure> {
         let path = &arguments.path;
-        let options = arguments.options.to_library();
+        let files = if is_standard(path) {
+            Files::of_standard_input()
+        } else {
+            Files::new(Arc::new(SceneFolder::of(path)))
+        };
+        let options = arguments.options.to_library(files);
         let loaded = if is_standard(path) {
             jbt::Scene::from_reader("<stdin>", io::stdin().lock(), &options)
         } else {
@@ -37,9 +44,21 @@ impl LoadedScene {
         if arguments.options.mirror {
             model.orientation.handed = model.orientation.handed.other();
         }
-        let notices: Vec<_> = warnings.iter().map(|one| Message::new(&text.source(), one)).collect();
+        let PartArguments { only, without } = &arguments.options.parts;
+        for part in without {
+            model = model.without(part).map_err(|error| Failure::scene(&path.display(), &error))?;
+        }
+        if let Some(part) = only {
+            model = model.only(part).map_err(|error| Failure::scene(&path.display(), &error))?;
+        }
+        let notices: Vec<_> = warnings.iter().map(|one| Message::in_text(&text, one)).collect();
         let warnings = notices.iter().map(|notice| notice.rendered.clone()).collect();
         Ok(Self { text, model, warnings, notices })
+    }
+
+    /// What a mesh of it is called: the part that is asked for, or the name of the root.
+    pub fn part_name<'a>(&'a self, parts: &'a PartArguments) -> Option<&'a str> {
+        parts.only.as_deref().or_else(|| self.model.root.node().name())
     }
 
     /// Tells people what is odd about the text.
@@ -52,8 +71,8 @@ impl LoadedScene {
     }
 
     /// The text, for messages.
-    pub fn source(&self) -> Source<'_> {
-        self.text.source()
+    pub fn text(&self) -> &SourceText {
+        &self.text
     }
 
     /// Its name, as it stands on the command line.
@@ -63,12 +82,33 @@ impl LoadedScene {
 
     /// Why a task was not done for it.
     pub fn failure(&self, error: &impl Classified) -> Failure {
-        Failure::task(&self.source(), error)
+        Failure::task(&self.text, error)
     }
 
     /// The checked model, or all that is wrong with it.
     pub fn check(&self) -> Result<CheckedTree, Failure> {
-        self.model.check().map_err(|error| Failure::diagnostics(&self.source(), &error))
+        self.model.check().map_err(|error| Failure::diagnostics(&self.text, &error))
+    }
+
+    /// The checked model, as far as something is wanted of it.
+    pub fn check_for(&self, wanted: &Wanted) -> Result<CheckedTree, Failure> {
+        wanted.of(self.check()?).map_err(|error| {
+            let words = |one: &Diagnostic| {
+                let help = one.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
+                format!("{}{help}; answers are {}", one.message, Query::EVERY.map(Query::name).join(", "))
+            };
+            Failure::Usage(error.first().map(words).unwrap_or_default())
+        })
+    }
+
+    /// The checked model with a colour for each leaf, in the group of this name, where that leaf decides.
+    pub fn owner_colors(&self, name: &str) -> Result<CheckedTree, Failure> {
+        let tree = self.check()?;
+        let has_own = tree.attributes().iter().any(|group| &*group.name == name);
+        if has_own {
+            return Ok(tree);
+        }
+        tree.with_owner_colors().map_err(|error| Failure::diagnostics(&self.text, &error))
     }
 
     /// An evaluator.

@@ -22,21 +22,21 @@ const NOT_STRAIGHT: &str = "the scene has no straight code: it has no formulas o
 
 /// Runs the command.
 pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
-    let query = arguments.query;
+    let query = arguments.query.query;
     let stage = arguments.stage.as_str();
     if !stages(query).any(|(name, _)| name == stage) {
         return Err(Failure::Usage(unknown(stage, query)));
     }
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
-    let tree = scene.check()?;
+    let tree = scene.check_for(&arguments.query)?;
     if stage == TREE {
         return print(text::print(&scene.model).trim_end());
     }
     let fail = |error: &CompileError| scene.failure(error);
     let purpose = Purpose::Answers(query);
     let Lowered { function, tables } =
-        lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;
+        lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(scene.text(), &diagnostics))?;
     let straight = match arguments.straight {
         false => None,
         true => Some(

@@ -6,6 +6,23 @@
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
+/// Bytes that each turn of a loop, each call of a definition, and each node of what it stands for count for,
+/// besides the text that is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer
+/// than the longest text.
+pub const EXPANSION_BYTES: usize = 128;
+/// Calls and loops of a text that may be open in each other.
+pub const MAX_EXPANSION_DEPTH: usize = 256;
+/// Files that may include each other, each the next one.
+pub const MAX_INCLUDE_DEPTH: usize = 16;
+/// Arguments of one definition.
+pub const MAX_ARGUMENTS: usize = 64;
+/// Lists in lists.
+pub const MAX_LIST_DEPTH: usize = 8;
+/// Files that one scene may name, directly or through files that it names.
+pub const MAX_NAMED_FILES: usize = 1024;
+/// Bytes of all files that one scene names: particles and grids are some hundred megabytes, and stay in
+/// memory. What is read as text has [`MAX_SCENE_BYTES`], all files of a scene together.
+pub const MAX_NAMED_BYTES: usize = 1 << 30;
 /// Numbers and strings of one request of a RIB file: 8 bytes each, kept until the request has been read.
 pub const MAX_LIST_NUMBERS: usize = 1 << 22;
 /// Steps of a scene that is a program, as those of POV-Ray are: directives that run, components, calls of

@@ -69,7 +69,8 @@ impl PyModel {
 
     /// Whether it says more than its tree does.
     pub(crate) fn says_more(&self) -> bool {
-        let Model { iso, attributes, root: _, parameters, source, origin, orientation } = &self.0.model;
+        let Model { iso, attributes, root: _, parameters, source, origin, orientation, comments: _ } =
+            &self.0.model;
         let plain = *iso == Model::DEFAULT_ISO.into() && *attributes == [AttributeGroup::color()];
         !plain
             || !parameters.is_empty()

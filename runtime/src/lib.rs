@@ -62,7 +62,7 @@
 //! | `jit` (default) | machine code; without it the SIMD interpreter runs, with the same bits |
 //! | `parallel` (default) | long work on the threads of the rayon pool in which it is called; without it on one |
 //! | `levels` (default) | loops of the mesher in AVX2 where the CPU has it, with the same bits |
-//! | `export` (default) | files: meshes, contours, pictures, atomic replacement |
+//! | `export` (default) | files: meshes, contours, pictures, atomic replacement, files that scenes name |
 //! | `listing` | machine code as text |
 //! | `trace` | stages of long work as spans of the crate `tracing`, for timelines |
 //! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
@@ -128,6 +128,8 @@ mod evaluator;
 pub mod export;
 mod finite_gradient;
 mod finite_points;
+#[cfg(feature = "export")]
+mod folder;
 pub mod internals;
 mod job;
 mod kernel;
@@ -186,6 +188,8 @@ pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
 pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
+#[cfg(feature = "export")]
+pub use folder::SceneFolder;
 pub use jbt_text::import::SceneFormat;
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;

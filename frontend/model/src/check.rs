@@ -15,12 +15,12 @@
 //!   their numbers.
 //! * Every affine map is invertible, and the numbers of its inverse are finite in f32.
 //! * The origin has finite coordinates.
-//! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
-//!   and fit its width.
+//! * The first attribute group is `color` with three reals, unless other groups alone were
+//!   [chosen](CheckedTree::of_attributes); names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
 //!   leaves, where a leaf counts once more for each piece of its skeleton.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::DAffine3;
@@ -35,28 +35,36 @@ use crate::number::ParameterValues;
 use crate::origin::ModelOrigin;
 use crate::parameter::{collect, refresh};
 use crate::report::Report;
+use crate::tree::Node;
 
 mod arena;
+mod chosen;
 mod dependence;
 mod edit;
 mod fields;
+mod find;
 mod groups;
 mod node;
 mod numbers;
 mod order;
+mod owners;
 mod parameters;
 mod particles;
+mod place;
 mod tree;
 
 pub use arena::{CheckedNode, Children, NodeId};
 use arena::{Paths, check_instances};
 use dependence::Dependence;
 pub use edit::CheckedModel;
+pub use find::FoundNode;
 use groups::{check_groups, share_name, widths};
 pub use node::MIN_RECIPROCAL_CONDITION;
 use node::check_node;
 use numbers::{check_numbers, check_words};
+pub use owners::OWNER;
 use parameters::check_iso;
+use place::{check_name, way_to};
 pub use tree::CheckedTree;
 
 impl Model {
@@ -77,11 +85,11 @@ impl Model {
         let mut report = Report::default();
         let (mut parameters, errors) = collect(&self.parameters, &self.iso, &self.root);
         report.extend(errors);
-        parameters::check_names(&mut report, &parameters);
         let values = refresh(&mut parameters).unwrap_or_else(|errors| {
             report.extend(errors);
             ParameterValues::new()
         });
+        parameters::check_names(&mut report, &parameters);
         if !report.is_empty() {
             return Err(report.finish());
         }
@@ -161,20 +169,16 @@ impl Model {
                 // An operator's limit depends on the iso-value, so it is checked again when that changes.
                 dependence.add(id, &Arc::new(written.clone()));
             }
+            let errors = report.count();
             if let Some(formula) = written.formula() {
                 check_words(report, formula, node.span());
             }
-            let mut kind = match parameters::evaluate(written, values, iso, node.span()) {
-                Ok(kind) => {
-                    check_node(report, &kind, node.children().len(), node.span(), &groups, iso);
-                    kind
-                }
-                Err(error) => {
-                    report.add(|| error);
-                    // A placeholder: the check has failed.
-                    NodeKind::Affine(DAffine3::IDENTITY)
-                }
-            };
+            let mut kind = evaluated(report, node, (iso, values), &groups);
+            check_name(report, node);
+            report.expanded_in(errors, node.label());
+            if node.span().is_none() {
+                report.stands_at(errors, || way_to(&self.root, tree));
+            }
             share_name(&mut kind, &self.attributes);
             let first = waiting.len() - node.children().len();
             let children = Children::from_slice(&waiting[first..]);
@@ -183,9 +187,28 @@ impl Model {
             if tree.is_shared() {
                 ids.insert(tree.identity(), id);
             }
-            nodes.push(CheckedNode { kind, children, span: node.span() });
+            nodes.push(CheckedNode { kind, children, span: node.span(), label: node.label().cloned() });
         }
         nodes
+    }
+}
+
+/// What a node means, checked by itself; a placeholder after an error.
+fn evaluated(
+    report: &mut Report,
+    node: &Node,
+    (iso, values): (f64, &ParameterValues),
+    groups: &BTreeMap<&str, usize>,
+) -> NodeKind {
+    match parameters::evaluate(node.written(), values, iso, node.span()) {
+        Ok(kind) => {
+            check_node(report, &kind, node.children().len(), node.span(), groups, iso);
+            kind
+        }
+        Err(error) => {
+            report.add(|| error);
+            NodeKind::Affine(DAffine3::IDENTITY)
+        }
     }
 }
 

@@ -10,7 +10,7 @@ mod list;
 
 use std::fmt::Write as _;
 
-pub use list::{Diagnostics, SourceText};
+pub use list::{Diagnostics, IncludedText, SourceText};
 
 /// A range of bytes of a source text.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, PartialOrd, Ord, Hash)]
@@ -64,13 +64,24 @@ pub struct Diagnostic {
     pub message: String,
     /// What was expected instead, or what to do.
     pub help: Option<String>,
+    /// How the place came to be read: the calls and loops that it stands in, innermost first.
+    pub notes: Vec<Note>,
+}
+
+/// A line below a message, with the place that it is about.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Note {
+    /// Where, if the model came from a text.
+    pub span: Option<Span>,
+    /// What is there.
+    pub message: String,
 }
 
 impl Diagnostic {
     /// An error.
     #[must_use]
     pub fn error(span: Option<Span>, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, span, message: message.into(), help: None }
+        Self { severity: Severity::Error, span, message: message.into(), help: None, notes: Vec::new() }
     }
 
     /// A limit that was reached.
@@ -163,6 +174,7 @@ impl Source<'_> {
             if let Some(help) = &diagnostic.help {
                 let _ = write!(out, "\n  {}", escape(help));
             }
+            self.render_notes(&mut out, first_line, diagnostic);
             return out;
         };
         if self.is_binary() {
@@ -183,7 +195,20 @@ impl Source<'_> {
         if let Some(help) = &diagnostic.help {
             let _ = write!(out, " {}", escape(help));
         }
+        self.render_notes(&mut out, first_line, diagnostic);
         out
+    }
+
+    /// The notes of a diagnostic, each on a line of its own.
+    fn render_notes(&self, out: &mut String, first_line: u64, diagnostic: &Diagnostic) {
+        for note in &diagnostic.notes {
+            let _ = write!(out, "\n  {}", escape(&note.message));
+            if let Some(span) = note.span {
+                let (line, column) = self.position(span.start as usize);
+                let line = first_line + line as u64 - 1;
+                let _ = write!(out, " at {}:{line}:{column}", escape(self.name));
+            }
+        }
     }
 
     /// The part of the span's line to show, the width of what stands before the span, and the width of the

@@ -26,6 +26,7 @@ pub mod function;
 #[cfg(any(feature = "glam", feature = "mint"))]
 mod interop;
 pub mod kind;
+pub mod label;
 pub mod map;
 pub mod member;
 pub mod model;
@@ -35,6 +36,7 @@ pub mod origin;
 pub mod owner;
 pub mod parameter;
 pub mod particles;
+pub mod path;
 mod power;
 pub mod query;
 pub mod report;

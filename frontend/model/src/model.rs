@@ -1,5 +1,8 @@
 //! A model: a tree, and what its field means.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use crate::attribute::AttributeGroup;
 use crate::diagnostic::SourceText;
 use crate::number::Number;
@@ -24,9 +27,16 @@ pub struct Model {
     /// Where its local coordinates begin, as the statement `origin` sets it; `None` leaves it to the
     /// [check](crate::check), which finds one for a model that is far away. See [`origin`](crate::origin).
     pub origin: Option<[f64; 3]>,
+    /// Comments in front of the statements of its text, which a printed text has again.
+    pub comments: Comments,
     /// How it stands: which axis points up, and the hand of its axes. Pictures and files ask for it.
     pub orientation: Orientation,
 }
+
+/// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `param NAME`, `attribute
+/// NAME`, `let NAME`, and `root` for the node of the model. A comment is lines that begin with `#`, and empty
+/// ones.
+pub type Comments = BTreeMap<String, Arc<str>>;
 
 impl Model {
     /// The iso-value when nothing else is said.
@@ -39,13 +49,20 @@ impl Model {
         let (parameters, _) = collect(&[], &iso, &root);
         let attributes = vec![AttributeGroup::color()];
         let orientation = Orientation::default();
-        Self { iso, attributes, root, parameters, origin: None, orientation, source: None }
+        let comments = Comments::new();
+        Self { iso, attributes, root, parameters, origin: None, orientation, source: None, comments }
     }
 
     /// The same with its local coordinates beginning at a point of the world: see [`origin`](crate::origin).
     #[must_use]
     pub fn with_origin(self, point: [f64; 3]) -> Self {
         Self { origin: Some(point), ..self }
+    }
+
+    /// The same model, of which equal subtrees are one: see [`Tree::share`].
+    #[must_use]
+    pub fn share(self) -> Self {
+        Self { root: self.root.share(), ..self }
     }
 
     /// The parameters of the model: those that are declared, then those that its tree mentions besides.
@@ -56,9 +73,9 @@ impl Model {
 }
 
 impl PartialEq for Model {
-    /// The same field, attributes and parameters; where they were written does not matter.
+    /// The same field, attributes and parameters; names, comments and places do not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, root, parameters, origin, orientation, source: _ } = self;
+        let Self { iso, attributes, root, parameters, origin, orientation, source: _, comments: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *root == other.root

@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use crate::attribute::AttributeValue;
-use crate::check::{CheckedTree, NodeId};
+use crate::check::{CheckedNode, CheckedTree, NodeId};
 use crate::combine::{Combinator, Sum};
 use crate::descent::{Question, ask};
 use crate::diagnostic::Span;
@@ -40,30 +40,56 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// The way from the root to the leaf: kinds and numbers of children, as in `union.2/color.0/segment`.
+    /// The way from the root to the leaf: names, or kinds where there is none, and numbers of children, as in
+    /// `union.2/color.0/arm`.
     #[must_use]
     pub fn path(&self, tree: &CheckedTree) -> String {
         let mut path = String::new();
         for &(node, child) in &self.above {
-            let _ = write!(path, "{}.{child}/", name(&tree.node(node).kind));
+            let _ = write!(path, "{}.{child}/", word(tree.node(node)));
         }
-        let kind = &tree.node(self.node).kind;
-        match kind {
-            NodeKind::Particles(_) => format!("{path}{}.{}/point", name(kind), self.particle),
+        let node = tree.node(self.node);
+        match &node.kind {
+            NodeKind::Particles(_) => format!("{path}{}.{}/point", word(node), self.particle),
             NodeKind::Primitive(_)
             | NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => path + name(kind),
+            | NodeKind::Attribute { .. } => path + word(node),
         }
+    }
+
+    /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or of
+    /// the leaf itself, which leads to it alone; see [`path`](crate::path). Nothing if none has one.
+    ///
+    /// ```
+    /// use jbt_model::owner::owner;
+    /// let text = "jbt 1 body: union { arm: point { radius 1 } arm: translate (3 0 0) { point { radius 1 } } }";
+    /// let tree = jbt_text::model(text)?.check()?;
+    /// let found = owner(&tree, [3.0, 0.1, 0.0]).unwrap();
+    /// assert_eq!(found.part(&tree).as_deref(), Some("body/arm.1"));
+    /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
+    /// ```
+    #[must_use]
+    pub fn part(&self, tree: &CheckedTree) -> Option<String> {
+        let way = self.above.iter().map(|&(node, _)| node).chain([self.node]);
+        let named: Vec<(usize, &str)> =
+            way.enumerate().filter_map(|(depth, node)| Some((depth, tree.node(node).name()?))).collect();
+        let &(depth, _) = named.last()?;
+        let names: Vec<&str> = named.iter().map(|&(_, name)| name).collect();
+        let found = tree.find(&names.join("/")).ok()?;
+        found.into_iter().find(|found| found.above == self.above[..depth]).map(|found| found.path)
     }
 }
 
-/// The word for a node.
-fn name(kind: &NodeKind) -> &str {
-    match kind {
+/// The word for a node: its name, or that of its kind.
+fn word(node: &CheckedNode) -> &str {
+    if let Some(name) = node.name() {
+        return name;
+    }
+    match &node.kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
         NodeKind::Particles(_) => "particles",
         NodeKind::Combine(combinator) => combinator.name(),

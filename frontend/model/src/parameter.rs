@@ -20,15 +20,93 @@ pub struct Parameter {
     pub(crate) setting: Option<f64>,
     /// Where it is declared in its source text.
     pub(crate) span: Option<Span>,
-    /// Where it stands in a declaration of attributes or of the origin, which no setting reaches.
-    pub(crate) declares: Option<Span>,
+    /// Where it stands in what stays as it was read.
+    pub(crate) declares: Option<(Fixture, Span)>,
+    /// Which values it may have.
+    pub(crate) range: Option<ParameterRange>,
+    /// What people call it.
+    pub(crate) label: Option<Arc<str>>,
+}
+
+/// What stays as it was read, so that a parameter that it depends on can only be set before.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fixture {
+    /// A declaration of attributes, or of the origin.
+    Declaration,
+    /// A loop or a condition, which decides which nodes there are.
+    Expansion,
+}
+
+/// The values that a parameter may have, and how far apart a slider puts them.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ParameterRange {
+    /// The smallest value.
+    pub low: f64,
+    /// The largest value.
+    pub high: f64,
+    /// From one value of a slider to the next, above 0.
+    pub step: Option<f64>,
+}
+
+impl ParameterRange {
+    /// Whether a value is in the range. Any multiple of the step and what is between are.
+    #[must_use]
+    pub fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// What is wrong with the range.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
+        let finite = self.low.is_finite() && self.high.is_finite() && self.step.is_none_or(f64::is_finite);
+        if !(finite && self.low < self.high) {
+            Some("expected the smallest value, then a larger one")
+        } else if self.step.is_some_and(|step| step <= 0.0 || step > self.high - self.low) {
+            Some("expected a step above 0, at most as large as the range")
+        } else {
+            None
+        }
+    }
 }
 
 impl Parameter {
     /// A parameter that nobody has set.
     #[must_use]
     pub fn new(name: &str, default: impl Into<Number>) -> Self {
-        Self { name: name.into(), default: default.into(), setting: None, span: None, declares: None }
+        let (name, default) = (name.into(), default.into());
+        Self { name, default, setting: None, span: None, declares: None, range: None, label: None }
+    }
+
+    /// The same that may have the values of a range alone; others are errors, also those that are set.
+    #[must_use]
+    pub fn within(self, range: ParameterRange) -> Self {
+        Self { range: Some(range), ..self }
+    }
+
+    /// The same with words that people know it by.
+    #[must_use]
+    pub fn labelled(self, label: &str) -> Self {
+        Self { label: Some(label.into()), ..self }
+    }
+
+    /// Which values it may have, if not any.
+    #[must_use]
+    pub fn range(&self) -> Option<ParameterRange> {
+        self.range
+    }
+
+    /// The words that people know it by.
+    #[must_use]
+    pub fn label(&self) -> Option<&str> {
+        self.label.as_deref()
+    }
+
+    /// The message about a value that is out of its range.
+    pub(crate) fn out_of_range(&self) -> Option<Diagnostic> {
+        let range = self.range.filter(|range| !range.contains(self.value()))?;
+        let message = format!("the parameter `{}` is {}", clip(&self.name), self.value());
+        let expected = format!("expected a number from {} to {}", range.low, range.high);
+        Some(Diagnostic::error(self.span, message).expected(expected))
     }
 
     /// A parameter that a text declares at a place; `setting`: what was set instead of its default.
@@ -44,10 +122,15 @@ impl Parameter {
         Number::with_formula(self.value(), NumberFormula::new(vec![step], None))
     }
 
-    /// Notes a declaration of attributes or of the origin that depends on the parameter: no setting reaches
-    /// such a declaration.
-    pub fn declares(&mut self, span: Span) {
-        self.declares = Some(span);
+    /// Notes what depends on the parameter and stays as it was read: no setting reaches it.
+    pub fn declares(&mut self, what: Fixture, span: Span) {
+        self.declares = Some((what, span));
+    }
+
+    /// What stays as it was read, and depends on it: setting it takes reading the text again.
+    #[must_use]
+    pub fn fixture(&self) -> Option<Fixture> {
+        self.declares.map(|(what, _)| what)
     }
 
     /// Its name.
@@ -81,10 +164,13 @@ impl Parameter {
 }
 
 impl PartialEq for Parameter {
-    /// The same name, and a value that comes from the same number: one that is set to its default is one that
-    /// has it.
+    /// The same name and range, and a value that comes from the same number: one that is set to its default
+    /// is one that has it.
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name && self.source() == other.source()
+        self.name == other.name
+            && self.range == other.range
+            && self.label == other.label
+            && self.source() == other.source()
     }
 }
 

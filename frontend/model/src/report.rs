@@ -1,8 +1,11 @@
 //! A list of diagnostics that cannot grow without bound: the first ones are kept, the rest are counted.
 
+use std::sync::Arc;
+
 use jbt_ir::limits::MAX_ERRORS;
 
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Note, Span};
+use crate::label::Label;
 
 /// Diagnostics of one reader.
 #[derive(Debug, Default)]
@@ -19,6 +22,35 @@ impl Report {
             self.counted += 1;
         } else {
             self.kept.push(make());
+        }
+    }
+
+    /// Says of all messages that were added since there were so many in which calls their node stands. What
+    /// is told already about the same place in other calls is not told again.
+    pub(crate) fn expanded_in(&mut self, since: usize, label: Option<&Arc<Label>>) {
+        let Some(calls) = label.and_then(|label| label.calls.as_ref()) else { return };
+        let new = self.kept.split_off(since.min(self.kept.len()));
+        for diagnostic in new {
+            let same = |other: &Diagnostic| {
+                other.span == diagnostic.span
+                    && other.message == diagnostic.message
+                    && !other.notes.is_empty()
+            };
+            if !self.kept.iter().any(same) {
+                self.kept.push(Diagnostic { notes: calls.notes(), ..diagnostic });
+            }
+        }
+    }
+
+    /// Says of all messages without a place that were added since there were so many where their node stands.
+    pub(crate) fn stands_at(&mut self, since: usize, way: impl FnOnce() -> String) {
+        let new = self.kept.get_mut(since..).unwrap_or_default();
+        if new.is_empty() {
+            return;
+        }
+        let message = format!("at {}", way());
+        for diagnostic in new.iter_mut().filter(|one| one.span.is_none()) {
+            diagnostic.notes.push(Note { span: None, message: message.clone() });
         }
     }
 
@@ -40,12 +72,12 @@ impl Report {
     }
 
     /// Puts what was kept in the order of its places in the text.
-    pub(crate) fn sort(&mut self) {
+    pub fn sort(&mut self) {
         self.kept.sort_by_key(|diagnostic| diagnostic.span);
     }
 
     /// How many were added.
-    pub(crate) fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.kept.len() + self.counted
     }
 

@@ -18,10 +18,14 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::diagnostic::Span;
+use crate::label::Label;
 use crate::traverse::Visit;
+use crate::word::normalized;
 use crate::written::Written;
 
 mod order;
+mod select;
+mod share;
 
 /// The iso-value of a model when nothing else is said.
 pub(crate) const DEFAULT_ISO: f64 = 0.5;
@@ -31,6 +35,8 @@ pub struct Node {
     written: Written,
     children: Vec<Tree>,
     span: Option<Span>,
+    /// Its name, and the calls around it.
+    label: Option<Arc<Label>>,
     /// Whether a number of this node, or of one below, depends on a parameter.
     depends: bool,
 }
@@ -40,6 +46,18 @@ impl Node {
     #[must_use]
     pub fn written(&self) -> &Written {
         &self.written
+    }
+
+    /// What its text says about it besides what it means.
+    #[must_use]
+    pub fn label(&self) -> Option<&Arc<Label>> {
+        self.label.as_ref()
+    }
+
+    /// Its name: that of its `let`, or the one that [`Tree::named`] has given it.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.label.as_ref()?.name.as_deref()
     }
 
     /// Whether a number of this node, or of one below, depends on a parameter.
@@ -84,7 +102,33 @@ impl Tree {
     pub(crate) fn assemble(written: Written, children: Vec<Self>, span: Option<Span>) -> Self {
         let depends =
             written.dependent_numbers().next().is_some() || children.iter().any(|child| child.0.depends);
-        Self(Arc::new(Node { written, children, span, depends }))
+        Self(Arc::new(Node { written, children, span, label: None, depends }))
+    }
+
+    /// The same node with a name, by which messages, paths and exported files know it: letters, digits and
+    /// underscores, beginning with a letter. Other parts of a model may have the same name.
+    ///
+    /// ```
+    /// use jbt_model::builder::point;
+    /// let hub = point([0; 3], 1).named("hub");
+    /// assert_eq!(hub.node().name(), Some("hub"));
+    /// ```
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        let label = self.node().label().map(|label| Label::clone(label)).unwrap_or_default();
+        let name = Some(normalized(name).into());
+        self.labelled(Some(Arc::new(Label { name, ..label })))
+    }
+
+    /// The same node with another label.
+    #[must_use]
+    pub fn labelled(mut self, label: Option<Arc<Label>>) -> Self {
+        if let Some(node) = Arc::get_mut(&mut self.0) {
+            node.label = label;
+            return self;
+        }
+        let Node { written, children, span, .. } = &*self.0;
+        Self::assemble(written.clone(), children.clone(), *span).labelled(label)
     }
 
     /// Adds a last child to the root. Trees that share the root keep it as it was.
@@ -94,9 +138,9 @@ impl Tree {
             node.children.push(child);
             return;
         }
-        let Node { written, children, span, .. } = &*self.0;
+        let Node { written, children, span, label, .. } = &*self.0;
         let children = children.iter().cloned().chain([child]).collect();
-        *self = Self::assemble(written.clone(), children, *span);
+        *self = Self::assemble(written.clone(), children, *span).labelled(label.clone());
     }
 
     /// The root node.

@@ -1,5 +1,9 @@
 //! Words that the text format keeps for itself, and what may be a name beside them.
 
+use std::borrow::Cow;
+
+use unicode_normalization::{UnicodeNormalization as _, is_nfc};
+
 /// The coordinates of a point.
 pub const COORDINATES: [&str; 3] = ["x", "y", "z"];
 /// The word for the field of a subtree.
@@ -13,8 +17,25 @@ pub fn is_statement(word: &str) -> bool {
     STATEMENTS.contains(&word)
 }
 
-/// Letters, digits and underscores, beginning with a letter.
-pub(crate) fn is_identifier(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+/// Whether a character may begin a name: a letter of any script.
+pub fn begins_name(c: char) -> bool {
+    if c.is_ascii() { c.is_ascii_alphabetic() } else { unicode_ident::is_xid_start(c) }
+}
+
+/// Whether a character may go on with a name: a letter, a mark on one, a digit, an underscore.
+pub fn continues_name(c: char) -> bool {
+    if c.is_ascii() { c.is_ascii_alphanumeric() || c == '_' } else { unicode_ident::is_xid_continue(c) }
+}
+
+/// Letters of any script, digits and underscores, beginning with a letter, in the normal form C of Unicode.
+pub fn is_identifier(name: &str) -> bool {
+    name.starts_with(begins_name)
+        && name.chars().all(continues_name)
+        && matches!(normalized(name), Cow::Borrowed(_))
+}
+
+/// A text in the normal form C of Unicode, in which a letter with its marks is one character where there is
+/// one: what looks the same is the same name.
+pub fn normalized(text: &str) -> Cow<'_, str> {
+    if text.is_ascii() || is_nfc(text) { Cow::Borrowed(text) } else { Cow::Owned(text.nfc().collect()) }
 }

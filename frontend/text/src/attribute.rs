@@ -47,7 +47,9 @@ impl Parser<'_> {
             let token = self.next();
             return self.attribute_formula(token, width).map(WrittenAttribute::Expressed);
         }
-        let is_number = |word: &str| self.parameter(word).is_some() || is_builtin(word);
+        let is_number = |word: &str| {
+            self.parameter(word).is_some() || self.elements_named(word).is_some() || is_builtin(word)
+        };
         let begins_uv = match word {
             Some(word) => UV_WORDS.contains(&word) && (width == 2 || !is_number(word)),
             None => self.peek().is(b'{'),

@@ -1,5 +1,8 @@
 //! Blocks of a text, and what their nodes become.
 
+use std::sync::Arc;
+
+use super::program::{BodyFrame, CallFrame, LocalFrame};
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::Span;
 use jbt_model::tree::Tree;
@@ -41,12 +44,43 @@ impl BlockFrame {
     }
 }
 
+/// What is open.
+pub(super) enum Frame<'a> {
+    /// A block of children.
+    Block(BlockFrame),
+    /// The body of a definition, of a loop or of a condition.
+    Body(Box<BodyFrame<'a>>),
+    /// A call waits for an argument.
+    Call(Box<CallFrame<'a>>),
+    /// A name waits for its node.
+    Local(Box<LocalFrame<'a>>),
+}
+
+/// The stack of what is open, and that of finished subtrees.
+#[derive(Default)]
+pub(super) struct NodeStack<'a> {
+    pub(super) frames: Vec<Frame<'a>>,
+    pub(super) finished: Vec<Tree>,
+    /// How many of the frames are bodies.
+    pub(super) bodies: usize,
+}
+
 /// What begins with a word.
-pub(super) enum Begun {
+pub(super) enum Begun<'a> {
     /// A whole subtree.
     Leaf(Tree),
+    /// Whole subtrees, which have been expanded already.
+    Many(Arc<[Tree]>),
     /// A block is open.
     Block(BlockFrame),
+    /// A body is open.
+    Body(Box<BodyFrame<'a>>),
+    /// A call is open.
+    Call(Box<CallFrame<'a>>),
+    /// A node with a name follows.
+    Named(Box<LocalFrame<'a>>),
+    /// What stands for no nodes.
+    Done,
     /// Nothing: the word was skipped.
     Nothing,
 }

@@ -91,7 +91,7 @@ impl Parser<'_> {
         self.peek().kind == TokenKind::Quoted || self.begins_srgb() || self.hex_in_comment(width).is_some()
     }
 
-    fn begins_srgb(&self) -> bool {
+    pub(super) fn begins_srgb(&self) -> bool {
         self.peek_word() == Some(SRGB) && self.peek_behind().is(b'(')
     }
 

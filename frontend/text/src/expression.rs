@@ -13,15 +13,16 @@
 
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
-use super::lex::{Token, TokenKind};
-use super::scope::FormulaScope;
+use super::lex::{COMPARISON, Token, TokenKind};
+use super::program::Value;
 use super::state::Parser;
-use super::words::{CONSTANTS, constant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 pub use jbt_model::function::Function;
 use jbt_model::number::{Binary, Number, NumberFormula, Step, Variable};
-use jbt_model::report::{clip, nearest};
+use jbt_model::report::clip;
 use jbt_model::word::is_statement;
+
+mod word;
 
 /// What waits on the operator stack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,6 +32,8 @@ enum Waiting {
     Group,
     /// A function and the place of its first argument on the operand stack.
     Call(Function, u32),
+    /// The place of an element in brackets, of a list with this number.
+    Index(u32),
 }
 
 impl Waiting {
@@ -39,12 +42,12 @@ impl Waiting {
         match self {
             Self::Binary(binary) => binary.strength(),
             Self::Negate => 3,
-            Self::Group | Self::Call(..) => 0,
+            Self::Group | Self::Call(..) | Self::Index(_) => 0,
         }
     }
 
     const fn is_open(self) -> bool {
-        matches!(self, Self::Group | Self::Call(..))
+        matches!(self, Self::Group | Self::Call(..) | Self::Index(_))
     }
 }
 
@@ -82,8 +85,10 @@ struct Stacks {
     operands: Vec<StackedOperand>,
     steps: Vec<Step>,
     waiting: Vec<(Waiting, u32)>,
-    /// How many groups and calls wait.
+    /// How many groups, calls and places of elements wait.
     open: usize,
+    /// The lists whose elements are picked.
+    lists: Vec<Vec<Value>>,
 }
 
 impl Stacks {
@@ -126,6 +131,13 @@ impl Stacks {
                 self.push(value, span);
             }
         }
+    }
+
+    /// A place in brackets, of one of these elements.
+    fn open_index(&mut self, elements: Vec<Value>, at: u32) {
+        self.open += 1;
+        self.waiting.push((Waiting::Index(self.lists.len() as u32), at));
+        self.lists.push(elements);
     }
 
     /// The only operand that is left.
@@ -222,11 +234,16 @@ impl Parser<'_> {
                 }
             }
         }
-        if let Some(&(_, at)) = stacks.waiting.iter().rev().find(|(waiting, _)| waiting.is_open()) {
+        if let Some(&(waiting, at)) = stacks.waiting.iter().rev().find(|(waiting, _)| waiting.is_open()) {
+            let is_index = matches!(waiting, Waiting::Index(_));
             let found = self.describe(self.peek());
+            let compared = self.peek().is(COMPARISON);
             self.report_and_mute(|| {
-                Diagnostic::error(Some(Span::new(at as usize, at as usize + 1)), "this `(` is not closed")
-                    .expected(format!("expected `)` before {found}"))
+                let (opened, closed) = if is_index { ('[', ']') } else { ('(', ')') };
+                let span = Span::new(at as usize, at as usize + 1);
+                let hint = if compared { "; comparisons have no parentheses around them" } else { "" };
+                Diagnostic::error(Some(span), format!("this `{opened}` is not closed"))
+                    .expected(format!("expected `{closed}` before {found}{hint}"))
             });
             return None;
         }
@@ -250,37 +267,7 @@ impl Parser<'_> {
                 self.expected_at(token, "expected a number");
                 None
             }
-            TokenKind::Word => {
-                self.next();
-                let word = self.text(token);
-                if let Some(variable) = self.variable(word, token) {
-                    let span = Span::new(token.start, self.previous_end());
-                    stacks.push_variable(variable.ok()?, span);
-                    return Some(false);
-                }
-                let parameter = self.parameter(word).is_some() && !self.peek().is(b'(');
-                let function = Function::named(word).filter(|_| !parameter);
-                if let Some(function) = function.or_else(|| self.falloff_function(word, token)) {
-                    if !self.peek().is(b'(') {
-                        self.report_and_mute(|| {
-                            Diagnostic::error(Some(token.span()), format!("`{word}` is a function"))
-                                .expected(format!("expected its arguments: {word}(...)"))
-                        });
-                        return None;
-                    }
-                    self.next();
-                    stacks.open += 1;
-                    stacks.waiting.push((Waiting::Call(function, stacks.operands.len() as u32), at));
-                    return Some(true);
-                }
-                if let Some(number) = self.parameter(word) {
-                    stacks.push_number(number, token.span());
-                } else {
-                    let value = constant(word).unwrap_or_else(|| self.unknown_number(word, token.span()));
-                    stacks.push(value, token.span());
-                }
-                Some(false)
-            }
+            TokenKind::Word => self.word_operand(stacks),
             TokenKind::Mark(b'-') => {
                 self.next();
                 stacks.waiting.push((Waiting::Negate, at));
@@ -321,9 +308,20 @@ impl Parser<'_> {
                 stacks.waiting.push((Waiting::Binary(binary), token.start as u32));
                 Some(true)
             }
-            (b')', None) if stacks.open > 0 => {
-                self.next();
+            (b']', None) if stacks.open > 0 => {
                 self.reduce(stacks, 0);
+                let Some(&(Waiting::Index(list), at)) = stacks.waiting.last() else { return None };
+                self.next();
+                stacks.waiting.pop();
+                stacks.open -= 1;
+                self.finish_index(stacks, list, Span::new(at as usize, token.end))
+            }
+            (b')', None) if stacks.open > 0 => {
+                self.reduce(stacks, 0);
+                if matches!(stacks.waiting.last(), Some((Waiting::Index(_), _))) {
+                    return None;
+                }
+                self.next();
                 stacks.open -= 1;
                 if let Some((waiting, at)) = stacks.waiting.pop() {
                     self.finish_group(stacks, waiting, Span::new(at as usize, token.end));
@@ -365,7 +363,7 @@ impl Parser<'_> {
                     let step = right.depends.then_some(Step::Negate);
                     stacks.push_result(-right.value, span, right.first, step);
                 }
-                Waiting::Group | Waiting::Call(..) => stacks.operands.push(right),
+                Waiting::Group | Waiting::Call(..) | Waiting::Index(_) => stacks.operands.push(right),
             }
         }
     }
@@ -425,24 +423,5 @@ impl Parser<'_> {
         let finite =
             if value.is_finite() { Ok(value) } else { Err(format!("{} is too large", clip(digits))) };
         self.computed(finite, span)
-    }
-
-    fn unknown_number(&mut self, word: &str, span: Span) -> f64 {
-        self.report_with(|parser| {
-            let builtin = Function::ALL
-                .iter()
-                .map(|function| function.name())
-                .chain(CONSTANTS.iter().map(|(name, _)| *name));
-            let error = Diagnostic::error(Some(span), format!("no parameter is named `{}`", clip(word)));
-            if parser.scope.is_some() && parser.lets.contains_key(word) {
-                return error.expected(format!("perhaps `field({word})`"));
-            }
-            let here = parser.scope.iter().flat_map(FormulaScope::words);
-            match nearest(word, parser.parameter_names().chain(builtin).chain(here)) {
-                Some(near) => error.expected(format!("perhaps `{near}`")),
-                None => error.expected(format!("declare it above: param {} = 1", clip(word))),
-            }
-        });
-        f64::NAN
     }
 }

@@ -88,7 +88,7 @@ impl<'a> Parser<'a> {
             return Err(());
         };
         self.next();
-        let tree = self.lets.get(name).cloned().unwrap_or_else(|| {
+        let tree = self.tree_named(name).unwrap_or_else(|| {
             self.report_with(|parser| {
                 let error =
                     Diagnostic::error(Some(at.span()), format!("no `let {}` stands above", clip(name)));
@@ -118,7 +118,7 @@ impl<'a> Parser<'a> {
         };
         let span = Span::new(start.start, self.previous_end());
         let written = Written::Expression(Formula::new(assembled, bounds));
-        Tree::at(span, written, children)
+        self.make(span, written, children)
     }
 
     /// The formula of an attribute, whose word, `start`, has just been taken: one value for each channel.
@@ -229,7 +229,7 @@ impl<'a> Parser<'a> {
 
     /// The node `warp`: its child is asked where three formulas of the point say. Its word has just been
     /// taken.
-    pub(super) fn formula_warp(&mut self, start: Token) -> Begun {
+    pub(super) fn formula_warp(&mut self, start: Token) -> Begun<'a> {
         let written = self.coordinates();
         let bounds = self.accept_word("within").then(|| self.corners());
         let weighted = self.accept_word(WEIGHTED);
@@ -318,13 +318,13 @@ impl<'a> Parser<'a> {
     }
 
     /// The node `within`: 0 outside of a box. Its word has just been taken.
-    pub(super) fn within(&mut self, start: Token) -> Begun {
+    pub(super) fn within(&mut self, start: Token) -> Begun<'a> {
         let corners = self.corners();
         self.unary(start, Some(bounding(corners)))
     }
 
     /// The node `falloff`: its child's field is a distance. Its word has just been taken.
-    pub(super) fn falloff_node(&mut self, start: Token) -> Begun {
+    pub(super) fn falloff_node(&mut self, start: Token) -> Begun<'a> {
         let Some(written) = self.falloff(true) else {
             return self.unary(start, None);
         };

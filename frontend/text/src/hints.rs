@@ -8,17 +8,17 @@ use jbt_model::skeleton::SkeletonKind;
 const WORDS: &[(&[&str], &str)] = &[
     (
         &["for", "foreach", "while", "loop", "intersection_for"],
-        "there are no loops: `repeat` and `repeat_around` copy a node, and a `let` is used anywhere, `use NAME`",
+        "a loop is `for i in 0 .. 6 { .. }`, or over a list, `for p in [(0 0 0) (1 0 0)] { .. }`",
     ),
     (
         &["module", "function", "def", "macro", "fn", "object"],
-        "a part with a name is `let NAME = ..`, anywhere `use NAME`; a number is `param NAME = ..`",
+        "a part with arguments is `def NAME(a, b = 1) { .. }`, one without `let NAME = ..` and `use NAME`",
     ),
+    (&["include", "import", "require"], "a file beside the scene is `include \"parts.jbt\"`"),
     (
-        &["include", "import", "require"],
-        "a scene is one file, which includes no other: its parts are `let NAME = ..`, used by `use NAME`",
+        &["if", "else", "switch", "case"],
+        "a condition is `if i > 2 { .. } else { .. }`, and what may change later `select which { a b }`",
     ),
-    (&["if", "else", "switch", "case"], "a choice is `select which { a b }`, of a `param which = 0`"),
     (
         &["var", "const", "define", "set", "float", "int", "double"],
         "a number with a name is `param NAME = 1`",
@@ -71,13 +71,15 @@ pub(super) fn foreign_word(word: &str) -> Option<&'static str> {
 /// What stands here for a mark of another program.
 pub(super) fn foreign_mark(text: &str) -> Option<&'static str> {
     match text.as_bytes().first()? {
-        b'[' | b']' => Some("a vector is (1 0 0), without brackets"),
+        b'[' | b']' => Some("a vector is (1 0 0), without brackets; a list of vectors is [(1 0 0) (0 1 0)]"),
         b';' => Some("nothing stands between nodes"),
         b'"' if text.len() > 1 && text.ends_with('"') => {
             Some("quotes are for colours alone, without parentheses: color \"#ff8800\" { .. }")
         }
         b'"' => Some("this quote is not closed on its line"),
-        b'<' | b'>' => Some("there are no comparisons: `step(a, x)` is 1 where x is at least a"),
+        b'<' | b'>' => {
+            Some("comparisons stand behind `if`; in a formula `step(a, x)` is 1 where x is at least a")
+        }
         b'%' => Some("a remainder is `mod(a, b)`"),
         _ => None,
     }

@@ -1,15 +1,16 @@
 //! Bytes to tokens, one at a time: a file is never a list of tokens in memory.
 
 use jbt_model::diagnostic::Span;
+use jbt_model::word::{begins_name, continues_name};
 
 /// The kind of a token.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum TokenKind {
-    /// A name or a keyword: a letter, then letters, digits and underscores.
+    /// A name or a keyword: a letter of any script, then letters, digits and underscores.
     Word,
     /// An unsigned decimal number.
     Number,
-    /// One of `{ } ( ) , = + - * / ^`.
+    /// One of `{ } ( ) [ ] , = : + - * / ^`, or [`RANGE`] or [`COMPARISON`].
     Mark(u8),
     /// Text in double quotes, all on one line.
     Quoted,
@@ -19,7 +20,13 @@ pub(super) enum TokenKind {
     End,
 }
 
-/// A token and where it stands.
+/// The mark of two points, between the ends of a range.
+pub(super) const RANGE: u8 = b'.';
+
+/// The mark of `<`, `<=`, `>`, `>=`, `==` and `!=`.
+pub(super) const COMPARISON: u8 = b'<';
+
+/// A token and where it stands, among all texts that are read together.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Token {
     pub(super) kind: TokenKind,
@@ -39,9 +46,28 @@ impl Token {
     }
 }
 
+/// A place to which a cursor can go back.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    text: &'a str,
+    base: usize,
+    /// From the beginning of this text.
+    at: usize,
+}
+
+impl<'a> Place<'a> {
+    /// The beginning of a text whose first byte has this place.
+    pub(super) fn start(text: &'a str, base: usize) -> Self {
+        let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+        Self { text, base, at }
+    }
+}
+
 /// A cursor over a text with one token of lookahead.
 pub(super) struct Lexer<'a> {
     text: &'a str,
+    /// The place of the text's first byte.
+    base: usize,
     token: Token,
     previous_end: usize,
 }
@@ -49,11 +75,37 @@ pub(super) struct Lexer<'a> {
 impl<'a> Lexer<'a> {
     /// A cursor before the first token.
     pub(super) fn new(text: &'a str) -> Self {
-        let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-        let mut lexer =
-            Self { text, token: Token { kind: TokenKind::End, start, end: start }, previous_end: start };
-        lexer.token = lexer.scan(start);
+        let token = Token { kind: TokenKind::End, start: 0, end: 0 };
+        let mut lexer = Self { text, base: 0, token, previous_end: 0 };
+        lexer.jump(Place::start(text, 0));
         lexer
+    }
+
+    /// The place before the next token.
+    pub(super) fn place(&self) -> Place<'a> {
+        Place { text: self.text, base: self.base, at: self.token.start - self.base }
+    }
+
+    /// Goes on at another place.
+    pub(super) fn jump(&mut self, place: Place<'a>) {
+        (self.text, self.base) = (place.text, place.base);
+        self.previous_end = place.base + place.at;
+        self.token = self.scan(self.previous_end);
+    }
+
+    /// The text that is being read, from a place in it.
+    pub(super) fn rest(&self, from: usize) -> &'a str {
+        &self.text[from - self.base..]
+    }
+
+    /// The place behind the text that is being read.
+    pub(super) fn end(&self) -> usize {
+        self.base + self.text.len()
+    }
+
+    /// The place of the first byte of the text that is being read.
+    pub(super) fn start(&self) -> usize {
+        self.base
     }
 
     /// The token that is next.
@@ -74,9 +126,9 @@ impl<'a> Lexer<'a> {
         token
     }
 
-    /// The bytes of a token.
-    pub(super) fn text(&self, token: Token) -> &'a str {
-        &self.text[token.start..token.end]
+    /// The bytes between two places, if they are in the text that is being read.
+    pub(super) fn text(&self, start: usize, end: usize) -> Option<&'a str> {
+        self.text.get(start.checked_sub(self.base)?..end.checked_sub(self.base)?)
     }
 
     /// Where the last taken token ended.
@@ -86,7 +138,7 @@ impl<'a> Lexer<'a> {
 
     /// Whether a blank stands before the next token and none after it.
     pub(super) fn leans_right(&self) -> bool {
-        let after = &self.text.as_bytes()[self.token.end..];
+        let after = &self.text.as_bytes()[self.token.end - self.base..];
         let blank = match after.first() {
             None => true,
             Some(b'/') => after.get(1) == Some(&b'/'),
@@ -103,42 +155,73 @@ impl<'a> Lexer<'a> {
 
     /// Goes to the end of the text.
     pub(super) fn finish(&mut self) {
-        let end = self.text.len();
+        let end = self.end();
         self.token = Token { kind: TokenKind::End, start: end, end };
     }
 
+    /// The token behind a place.
     fn scan(&self, from: usize) -> Token {
-        let bytes = self.text.as_bytes();
-        let start = skip_blanks(bytes, from);
-        let run = |from: usize, test: fn(u8) -> bool| {
-            bytes[from..].iter().position(|&b| !test(b)).map_or(bytes.len(), |n| from + n)
-        };
-        let token = |kind, end| Token { kind, start, end };
-        match bytes.get(start) {
-            None => token(TokenKind::End, start),
-            Some(b'a'..=b'z' | b'A'..=b'Z') => token(TokenKind::Word, run(start, is_word)),
-            Some(b'0'..=b'9' | b'.') => match number(bytes, start) {
-                // Letters right after a number belong to it: `2x` is a mistake, not two tokens.
-                Some(end) if !bytes.get(end).is_some_and(|&b| is_word(b) || b == b'.') => {
-                    token(TokenKind::Number, end)
-                }
-                _ => token(TokenKind::Unknown, run(start, |b| is_word(b) || b == b'.').max(start + 1)),
-            },
-            Some(&mark @ (b'{' | b'}' | b'(' | b')' | b',' | b'=' | b'+' | b'-' | b'*' | b'/' | b'^')) => {
-                token(TokenKind::Mark(mark), start + 1)
-            }
-            Some(b'"') => match bytes[start + 1..].iter().position(|b| matches!(b, b'"' | b'\n' | b'\r')) {
-                Some(n) if bytes[start + 1 + n] == b'"' => token(TokenKind::Quoted, start + n + 2),
-                // Without its end, a quote goes as far as a word, so that what it holds begins no comment.
-                _ => token(
-                    TokenKind::Unknown,
-                    run(start, |b| !b.is_ascii_whitespace() && !matches!(b, b'{' | b'}' | b'(' | b')')),
-                ),
-            },
-            Some(byte) if byte.is_ascii() => token(TokenKind::Unknown, start + 1),
-            Some(_) => token(TokenKind::Unknown, run(start, |b| !b.is_ascii())),
-        }
+        let token = scan(self.text, from - self.base);
+        Token { kind: token.kind, start: self.base + token.start, end: self.base + token.end }
     }
+}
+
+/// The token behind a byte of a text.
+fn scan(text: &str, from: usize) -> Token {
+    let bytes = text.as_bytes();
+    let start = skip_blanks(bytes, from);
+    let run = |from: usize, test: fn(u8) -> bool| {
+        bytes[from..].iter().position(|&b| !test(b)).map_or(bytes.len(), |n| from + n)
+    };
+    let token = |kind, end| Token { kind, start, end };
+    let next = bytes.get(start + 1);
+    match bytes.get(start) {
+        None => token(TokenKind::End, start),
+        Some(b'a'..=b'z' | b'A'..=b'Z') => token(TokenKind::Word, word_end(text, start)),
+        Some(b'.') if next == Some(&b'.') => token(TokenKind::Mark(RANGE), start + 2),
+        Some(b'0'..=b'9' | b'.') => match number(bytes, start) {
+            // Letters right after a number belong to it: `2x` is a mistake, not two tokens.
+            Some(end) if !bytes.get(end).is_some_and(|&b| is_word(b) || ends_in_point(bytes, end)) => {
+                token(TokenKind::Number, end)
+            }
+            _ => token(TokenKind::Unknown, run(start, |b| is_word(b) || b == b'.').max(start + 1)),
+        },
+        Some(b'=' | b'!' | b'<' | b'>') if next == Some(&b'=') => {
+            token(TokenKind::Mark(COMPARISON), start + 2)
+        }
+        Some(b'<' | b'>') => token(TokenKind::Mark(COMPARISON), start + 1),
+        Some(
+            &mark @ (b'{' | b'}' | b'(' | b')' | b'[' | b']' | b',' | b'=' | b':' | b'+' | b'-' | b'*' | b'/'
+            | b'^'),
+        ) => token(TokenKind::Mark(mark), start + 1),
+        Some(b'"') => match bytes[start + 1..].iter().position(|b| matches!(b, b'"' | b'\n' | b'\r')) {
+            Some(n) if bytes[start + 1 + n] == b'"' => token(TokenKind::Quoted, start + n + 2),
+            // Without its end, a quote goes as far as a word, so that what it holds begins no comment.
+            _ => token(
+                TokenKind::Unknown,
+                run(start, |b| !b.is_ascii_whitespace() && !matches!(b, b'{' | b'}' | b'(' | b')')),
+            ),
+        },
+        Some(byte) if byte.is_ascii() => token(TokenKind::Unknown, start + 1),
+        Some(_) if text[start..].starts_with(begins_name) => token(TokenKind::Word, word_end(text, start)),
+        Some(_) => token(TokenKind::Unknown, run(start, |b| !b.is_ascii())),
+    }
+}
+
+/// The end of a word that begins here.
+fn word_end(text: &str, start: usize) -> usize {
+    let rest = &text.as_bytes()[start..];
+    match rest.iter().position(|&byte| !is_word(byte)) {
+        None => text.len(),
+        Some(n) if rest[n].is_ascii() => start + n,
+        // Most words are ASCII.
+        Some(_) => text[start..].find(|c| !continues_name(c)).map_or(text.len(), |n| start + n),
+    }
+}
+
+/// Whether a point that is not the first one of a range stands here.
+fn ends_in_point(bytes: &[u8], at: usize) -> bool {
+    bytes[at] == b'.' && bytes.get(at + 1) != Some(&b'.')
 }
 
 fn is_word(byte: u8) -> bool {
@@ -169,7 +252,7 @@ fn number(bytes: &[u8], start: usize) -> Option<usize> {
     };
     let mut end = digits(start);
     let mut count = end - start;
-    if bytes.get(end) == Some(&b'.') {
+    if bytes.get(end) == Some(&b'.') && bytes.get(end + 1) != Some(&b'.') {
         let fraction = digits(end + 1);
         count += fraction - end - 1;
         end = fraction;
@@ -202,7 +285,7 @@ mod tests {
             if token.kind == TokenKind::End {
                 break;
             }
-            shown.push(format!("{:?} {}", token.kind, lexer.text(token)));
+            shown.push(format!("{:?} {}", token.kind, lexer.text(token.start, token.end).unwrap()));
         }
         assert_eq!(
             shown.join("; "),

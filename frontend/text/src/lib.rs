@@ -21,10 +21,24 @@
 //!            | "origin" vector                               where local coordinates begin; found by the check if not written
 //!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
+//!              [ "in" expression ".." expression [ "step" expression ] ] [ QUOTED ]    its range and its label
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
-//!            | "let" NAME "=" node
+//!            | "let" NAME "=" ( node | item )
+//!            | "def" NAME "(" [ NAME [ "=" item ] { "," NAME [ "=" item ] } ] ")" body
+//!            | "include" QUOTED                              what the file gives a name to
 //!            | node ;
-//! node       = primitive | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
+//! body       = "{" { "let" NAME "=" ( node | item ) | node } "}" ;    nodes of which it stands for all
+//! node       = NAME ":" node                                 with a name
+//!            | NAME "(" [ [ NAME "=" ] ( item | node ) { "," .. } ] ")"    what a definition stands for
+//!            | "for" NAME "in" ( item | expression ".." expression [ "step" expression ] ) body
+//!            | "if" condition body { "else" "if" condition body } [ "else" body ]
+//!            | "include" QUOTED                              the node of the file
+//!            | plain ;
+//! condition  = test { ( "and" | "or" ) test } ;              `and` binds before `or`
+//! test       = { "not" } expression [ ( "<" | "<=" | ">" | ">=" | "==" | "!=" ) expression ] ;
+//! item       = expression | vector | HEX | "srgb" vector | "[" { item [ "," ] } "]" | "use" NAME
+//!            | NAME { "[" expression "]" } ;                 a value with a name, or an element of it
+//! plain      = primitive | particles | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
 //! formula    = "expression" [ box ] "{" { NAME "=" expression "," } expression "}"
 //!            | box "{" node "}"                              the node's field, and 0 outside of the box
 //!            | "falloff" FALLOFF "radius" expression "{" node "}" ;   the node's field is a distance; what is negative is 0
@@ -68,13 +82,14 @@
 //! values     = vector | expression                           as many as the group is wide
 //!            | HEX | "srgb" vector ;                         a colour as screens have it, made linear: 3 reals, or 4 with an opacity
 //! vector     = "(" expression { [ "," ] expression } ")" ;
-//! expression = NUMBER | NAME | "pi" | "-" expression | "+" expression | "(" expression ")"
+//! expression = NUMBER | NAME { "[" expression "]" } | "count" "(" NAME ")" | "pi" | "-" expression | "+" expression | "(" expression ")"
 //!            | expression ( "+" | "-" | "*" | "/" | "^" ) expression
 //!            | FUNCTION "(" expression { "," expression } ")" ;
 //!            | "x" | "y" | "z" | "field" "(" NAME ")" | NAME    in formulas: coordinates, fields of `let`s, definitions
 //! FUNCTION   = a word of [`functions`] ;                  in formulas also FALLOFF, of a distance of which 1 is the end
 //! HEX        = a double quote, "#", 3, 4, 6 or 8 digits in hex, a double quote ;
-//! NAME       = letter { letter | digit | "_" } ;
+//! QUOTED     = a double quote, text of one line, a double quote ;
+//! NAME       = letter { letter | mark | digit | "_" } ;  letters of any script (XID of Unicode), in the normal form C
 //! ```
 //!
 //! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of
@@ -105,6 +120,12 @@
 //! * **Directly inside a vector, a `+` or `-` with a blank before it and none after it begins the next
 //!   number**: `(1 -2 3)` are three numbers, `(1 - 2 3)`, `(1-2 3)` and `((1 -2) 3)` are two.
 //!
+//! * Programs (`program/`) are expanded while they are read: a model knows none of their words. Loops,
+//!   conditions and places of elements may follow parameters, which then can be set only by reading the text
+//!   again. Words of programs are no reserved words: `for` is a loop where `in` follows its name, `def` a
+//!   definition where a name follows, `include` a file where a quote follows, `if` a condition unless a group
+//!   of attributes is called so.
+//!
 //! # Promises
 //!
 //! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number,
@@ -118,6 +139,7 @@ mod block;
 mod color;
 mod expression;
 mod falloff;
+pub mod files;
 mod formula;
 mod hints;
 pub mod import;
@@ -129,17 +151,25 @@ mod parse;
 mod particles;
 mod primitive;
 mod print;
+mod program;
 mod scope;
+mod stack;
 mod state;
+mod texts;
 mod value;
 mod words;
 
+use std::borrow::Cow;
+
+use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostics, SourceText};
 pub use jbt_model::function::Function;
 use jbt_model::model::Model;
+use jbt_model::word::normalized;
 
 pub use print::print;
 pub use state::Options;
+use texts::Texts;
 pub use words::COMMON_FIELDS;
 
 /// The model of a text.
@@ -155,10 +185,22 @@ pub use words::COMMON_FIELDS;
 /// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the
 /// others. Whether the model makes sense, [`check`](jbt_model::check) says.
 pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
-    let source = || Some(SourceText::new(SourceText::UNNAMED, text));
-    match parse::read(text, options) {
+    let text = &*in_normal_form(text);
+    let texts = Texts::new(text.len());
+    let source = || Some(SourceText::new(SourceText::UNNAMED, text).including(texts.included()));
+    match parse::read(text, &texts, options) {
         Ok(model) => Ok(Model { source: source(), ..model }),
         Err(list) => Err(Diagnostics::new(list, source())),
+    }
+}
+
+/// The text in the normal form C of Unicode, as names have it; messages quote it so. What is no text, or is
+/// too long for one, stays as it is.
+fn in_normal_form(text: &[u8]) -> Cow<'_, [u8]> {
+    let known = (text.len() <= MAX_SCENE_BYTES).then(|| std::str::from_utf8(text).ok()).flatten();
+    match known.map(normalized) {
+        Some(Cow::Owned(text)) => Cow::Owned(text.into_bytes()),
+        Some(Cow::Borrowed(_)) | None => Cow::Borrowed(text),
     }
 }
 

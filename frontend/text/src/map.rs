@@ -8,9 +8,9 @@ use jbt_model::field::{Field, FieldKind};
 use jbt_model::map::MapKind;
 use jbt_model::written::{FieldNumber, Written};
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
     /// The map that begins with this word, which has been taken.
-    pub(super) fn map(&mut self, start: Token, word: &str) -> Begun {
+    pub(super) fn map(&mut self, start: Token, word: &str) -> Begun<'a> {
         let kinds: Vec<MapKind> = MapKind::named(word).collect();
         let read = match kinds[..] {
             [kind] => self.only_map(start, kind),

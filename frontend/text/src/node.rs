@@ -6,6 +6,7 @@ use super::block::{Begun, BlockFrame, Head};
 use super::expression::ExpressionPlace;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
+use super::program::Value;
 use super::state::Parser;
 use super::words::{GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
 use jbt_model::combine::CombinatorKind;
@@ -21,59 +22,17 @@ use jbt_model::written::Written;
 impl<'a> Parser<'a> {
     /// Whether a word begins a node of this file.
     pub(super) fn begins_node(&self, word: &str) -> bool {
-        fixed_words().any(|fixed| fixed == word) || self.group(word).is_some()
+        fixed_words().any(|fixed| fixed == word)
+            || self.group(word).is_some()
+            || self.program.defines(word)
+            || ["for", "if", "include"].contains(&word)
     }
 
     /// All words that begin a node of this file.
     fn node_words(&self) -> impl Iterator<Item = &str> {
         let fixed = fixed_words().map(|word| -> &str { word });
-        fixed.chain(self.attributes.iter().map(|group| &*group.name))
-    }
-
-    /// A node with everything below it.
-    pub(super) fn tree(&mut self) -> Tree {
-        let mut frames: Vec<BlockFrame> = Vec::new();
-        let mut finished: Vec<Tree> = Vec::new();
-        loop {
-            let token = self.peek();
-            let word = self.peek_word();
-            match token.kind {
-                TokenKind::Word if !word.is_some_and(is_statement) => match self.begin() {
-                    Begun::Leaf(tree) => finished.push(tree),
-                    Begun::Block(frame) => {
-                        frames.push(BlockFrame { first: finished.len() as u32, ..frame });
-                        continue;
-                    }
-                    Begun::Nothing => {}
-                },
-                TokenKind::Mark(b'}') if let Some(frame) = frames.pop() => {
-                    self.report_again();
-                    self.next();
-                    let children = finished.drain(frame.first as usize..).collect();
-                    let tree = self.close(frame, children);
-                    finished.push(tree);
-                }
-                TokenKind::Word | TokenKind::End => {
-                    match frames.last() {
-                        Some(frame) => self.unclosed(frame.open, token),
-                        None => self.expected_at(token, "expected a node"),
-                    }
-                    return self.broken.clone();
-                }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
-                    let Some(frame) = frames.last_mut() else {
-                        self.expected_at(token, "expected a node");
-                        return self.broken.clone();
-                    };
-                    frame.incomplete = true;
-                    self.expected_at(token, "expected a node or `}`");
-                    self.skip_token();
-                }
-            }
-            if frames.is_empty() {
-                return finished.pop().unwrap_or_else(|| self.broken.clone());
-            }
-        }
+        let own = self.attributes.iter().map(|group| &*group.name);
+        fixed.chain(own).chain(self.program.definition_names())
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -159,7 +118,7 @@ impl<'a> Parser<'a> {
     }
 
     /// What begins with the word that is next.
-    fn begin(&mut self) -> Begun {
+    pub(super) fn begin(&mut self) -> Begun<'a> {
         let start = self.next();
         let word = self.text(start);
         if self.is_muted() {
@@ -167,6 +126,10 @@ impl<'a> Parser<'a> {
                 return Begun::Nothing;
             }
             self.report_again();
+        }
+        if self.peek().is(b':') {
+            self.next();
+            return self.named_node(start);
         }
         if let Some(kind) = SkeletonKind::ALL.iter().copied().find(|kind| kind.name() == word) {
             self.count_node(start.span());
@@ -212,12 +175,16 @@ impl<'a> Parser<'a> {
                 }
             },
             _ if self.group(word).is_some() => self.attribute(start, start, word),
+            _ if self.program.defines(word) => self.call(start, word),
+            _ if self.is_loop(word) => self.for_node(start),
+            _ if self.is_condition(word) => self.if_node(start),
+            _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
             _ => self.unknown_node(start, word),
         }
     }
 
     /// The block of a node whose head has been read.
-    pub(super) fn block(&mut self, start: Token, head: Head) -> Begun {
+    pub(super) fn block(&mut self, start: Token, head: Head) -> Begun<'a> {
         let span = Span::new(start.start, self.previous_end());
         self.count_node(span);
         match self.open() {
@@ -252,16 +219,16 @@ impl<'a> Parser<'a> {
         self.accept(b'{')
     }
 
-    pub(super) fn unary(&mut self, start: Token, written: Option<Written>) -> Begun {
+    pub(super) fn unary(&mut self, start: Token, written: Option<Written>) -> Begun<'a> {
         self.block(start, written.map_or(Head::Broken, |written| Head::Unary(Box::new(written))))
     }
 
     /// The node of a block that has been closed.
-    fn close(&mut self, frame: BlockFrame, children: Vec<Tree>) -> Tree {
+    pub(super) fn close(&mut self, frame: BlockFrame, children: Vec<Tree>) -> Tree {
         let written = match frame.head {
             Head::Broken => return self.broken.clone(),
             Head::Combine(combinator) => {
-                return Tree::at(frame.span, Written::Combine { combinator, fields: Vec::new() }, children);
+                return self.make(frame.span, Written::Combine { combinator, fields: Vec::new() }, children);
             }
             Head::Operator(written) => *written,
             Head::Weighted(written) => {
@@ -293,23 +260,24 @@ impl<'a> Parser<'a> {
                 *written
             }
         };
-        let made = Tree::at(frame.span, written, children);
+        let made = self.make(frame.span, written, children);
         let Some(around) = frame.around else { return made };
-        Tree::at(frame.span, *around, vec![made])
+        self.make(frame.span, *around, vec![made])
     }
 
-    fn select(&mut self, start: Token) -> Begun {
+    fn select(&mut self, start: Token) -> Begun<'a> {
         let which = self.expression(ExpressionPlace::Alone).number;
         self.block(start, Head::Operator(Box::new(Written::Select(which))))
     }
 
-    fn use_node(&mut self) -> Tree {
+    /// The node of the name that is next.
+    pub(super) fn use_node(&mut self) -> Tree {
         let token = self.peek();
         let Some(name) = self.peek_word() else {
             self.expected_at(token, "expected the name of a `let`");
             return self.broken.clone();
         };
-        if let Some(tree) = self.lets.get(name).cloned() {
+        if let Some(tree) = self.tree_named(name) {
             self.next();
             return tree;
         }
@@ -332,7 +300,16 @@ impl<'a> Parser<'a> {
         self.broken.clone()
     }
 
-    fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun {
+    /// The node that a name stands for: an argument, a value of a body, or a `let`.
+    pub(super) fn tree_named(&self, name: &str) -> Option<Tree> {
+        match self.program.value(name) {
+            Some(Value::Tree(tree)) => Some(tree.clone()),
+            Some(Value::Number(_) | Value::Numbers(_) | Value::List(_)) => None,
+            None => self.lets.get(name).cloned(),
+        }
+    }
+
+    fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun<'a> {
         let group = self.attributes.iter().find(|group| &*group.name == name);
         let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
             self.report_with(|parser| {
@@ -353,7 +330,7 @@ impl<'a> Parser<'a> {
 
     /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute,
     /// others are skipped.
-    fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun {
+    fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun<'a> {
         let foreign = foreign_word(word);
         let valued = foreign.is_none() && (self.peek().is(b'(') || self.peek().kind == TokenKind::Number);
         let assigned = self.peek().is(b'=');

@@ -18,9 +18,9 @@ use jbt_model::field::{Field, FieldKind, FieldValue};
 use jbt_model::report::clip;
 use jbt_model::written::{FieldNumber, Written};
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
     /// The operator that begins with the word of a kind, which has been taken.
-    pub(super) fn combinator(&mut self, start: Token, first: CombinatorKind) -> Begun {
+    pub(super) fn combinator(&mut self, start: Token, first: CombinatorKind) -> Begun<'a> {
         if first.fields().is_empty() && !first.takes_one() {
             return self.block(start, Head::Combine(first));
         }

@@ -5,20 +5,23 @@ use std::sync::Arc;
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
 use super::expression::ExpressionPlace;
-use super::lex::{Token, TokenKind};
+use super::lex::{RANGE, Token, TokenKind};
+use super::program::Value;
 use super::state::{Options, Parser};
+use super::texts::Texts;
 use super::words::is_builtin;
 use jbt_model::attribute::{AttributeGroup, Mixing};
-use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::diagnostic::{Diagnostic, Span, escape};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, NumberFormula};
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
-use jbt_model::parameter::{Parameter, not_finite, unknown};
+use jbt_model::parameter::{Fixture, Parameter, ParameterRange, not_finite, unknown};
 use jbt_model::report::clip;
-use jbt_model::word::is_statement;
+use jbt_model::tree::Tree;
+use jbt_model::word::{is_statement, normalized};
 
 /// The model of a text, or everything that is wrong with it.
-pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
+pub(super) fn read(text: &[u8], texts: &Texts, options: &Options) -> Result<Model, Vec<Diagnostic>> {
     if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", text.len());
         return Err(vec![Diagnostic::limit(None, message)]);
@@ -31,7 +34,7 @@ pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnost
                 .expected("expected a text file, in the encoding UTF-8"),
         ]
     })?;
-    let mut parser = Parser::new(whole, options);
+    let mut parser = Parser::new(whole, texts, options);
     parser.file();
     parser.finish()
 }
@@ -39,7 +42,8 @@ pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnost
 /// The value of a text that is one expression, or everything that is wrong with it.
 pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
     let options = Options::default();
-    let mut parser = Parser::new(text, &options);
+    let texts = Texts::new(text.len());
+    let mut parser = Parser::new(text, &texts, &options);
     let value = parser.expression(ExpressionPlace::Alone).number.value();
     let rest = parser.peek();
     if rest.kind != TokenKind::End {
@@ -48,16 +52,50 @@ pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
     if parser.report.is_empty() { Ok(value) } else { Err(parser.report.finish()) }
 }
 
+/// What a comment in front of the node of the model is kept by.
+pub(super) const ROOT: &str = "root";
+
+/// The comment in the blanks in front of a statement: its lines, each with `#`, and empty lines between them.
+/// What stands behind something on its line is no part of it.
+fn comment_of(gap: &str, is_start: bool) -> Option<String> {
+    if !gap.contains(['#', '/']) {
+        return None;
+    }
+    let gap = gap.replace("\r\n", "\n").replace('\r', "\n");
+    let lines = gap.split('\n').skip(usize::from(!is_start));
+    let mut kept: Vec<String> = Vec::new();
+    for line in lines {
+        let line = line.trim();
+        let words = line.strip_prefix('#').or_else(|| line.strip_prefix("//"));
+        match words {
+            Some(words) => kept.push(escape(&format!("#{words}"))),
+            None if kept.last().is_some_and(|last| !last.is_empty()) => kept.push(String::new()),
+            None => {}
+        }
+    }
+    while kept.last().is_some_and(String::is_empty) {
+        kept.pop();
+    }
+    (!kept.is_empty()).then(|| kept.join("\n"))
+}
+
 impl<'a> Parser<'a> {
-    fn file(&mut self) {
+    /// A text from its first word to its end.
+    pub(super) fn file(&mut self) {
+        self.keep_comment();
         self.header();
         loop {
             let token = self.peek();
+            self.keep_comment();
             match token.kind {
                 TokenKind::End => return,
                 TokenKind::Word => {
                     let word = self.text(token);
-                    if is_statement(word) {
+                    if self.begins_definition(word) {
+                        self.report_again();
+                        self.next();
+                        self.definition_statement(word, token);
+                    } else if is_statement(word) {
                         self.report_again();
                         self.next();
                         self.statement(word, token.span());
@@ -84,16 +122,34 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Keeps the comment in front of the statement that is next.
+    fn keep_comment(&mut self) {
+        let token = self.peek();
+        let gap = self.lexer.text(self.previous_end(), token.start).unwrap_or_default();
+        let Some(comment) = comment_of(gap, self.previous_end() == self.lexer.start()) else { return };
+        if self.is_included() || token.kind != TokenKind::Word {
+            return;
+        }
+        let word = self.text(token);
+        let name = self.peek_behind();
+        let key = match word {
+            _ if self.begins_definition(word) => return,
+            "jbt" | "iso" | "origin" => word.to_owned(),
+            _ if is_statement(word) && name.kind == TokenKind::Word => format!("{word} {}", self.text(name)),
+            _ => ROOT.to_owned(),
+        };
+        self.comments.insert(key, comment.into());
+    }
+
     fn header(&mut self) {
         let token = self.peek();
-        if self.whole.trim().is_empty() {
+        if self.lexer.rest(self.lexer.start()).trim().is_empty() {
             return;
         }
         if !self.accept_word("jbt") {
-            let span = Span::new(
-                token.start,
-                token.start + self.whole[token.start..].chars().take(1).map(char::len_utf8).sum::<usize>(),
-            );
+            let rest = self.lexer.rest(token.start);
+            let span =
+                Span::new(token.start, token.start + rest.chars().take(1).map(char::len_utf8).sum::<usize>());
             self.report(|| {
                 Diagnostic::error(Some(span), "the file does not begin with `jbt 1`")
                     .expected("expected the format and its version first")
@@ -134,6 +190,16 @@ impl<'a> Parser<'a> {
 
     fn iso_statement(&mut self, span: Span) {
         let value = self.expression(ExpressionPlace::Alone).number;
+        if self.is_included() {
+            let iso = self.iso.value();
+            if value.value().to_bits() != iso.to_bits() && !value.value().is_nan() {
+                self.report(|| {
+                    Diagnostic::error(Some(span), format!("the iso-value of the scene is {iso}"))
+                        .expected("expected the same in a file that it includes, or none")
+                });
+            }
+            return;
+        }
         if self.iso_at.is_some() {
             self.report(|| Diagnostic::error(Some(span), "a second `iso`").expected("expected it once"));
         } else if self.nodes > 0 {
@@ -149,8 +215,12 @@ impl<'a> Parser<'a> {
     fn origin_statement(&mut self, span: Span) {
         let from = self.peek().start;
         let numbers: [Number; 3] = self.vector();
+        if self.is_included() {
+            // That of the scene counts, or none; it changes no field.
+            return;
+        }
         for number in &numbers {
-            self.declares(number, Span::new(from, self.previous_end()));
+            self.declares(Fixture::Declaration, number, Span::new(from, self.previous_end()));
         }
         if self.origin.replace(numbers.map(|number| number.value())).is_some() {
             self.report(|| Diagnostic::error(Some(span), "a second `origin`").expected("expected it once"));
@@ -185,7 +255,7 @@ impl<'a> Parser<'a> {
     }
 
     /// A name that is being defined.
-    fn name(&mut self, what: &str) -> Option<(&'a str, Span)> {
+    pub(super) fn name(&mut self, what: &str) -> Option<(&'a str, Span)> {
         let token = self.peek();
         if token.kind != TokenKind::Word {
             self.expected_at(token, &format!("expected the {what}'s name"));
@@ -195,7 +265,7 @@ impl<'a> Parser<'a> {
         Some((self.text(token), token.span()))
     }
 
-    fn equals(&mut self) {
+    pub(super) fn equals(&mut self) {
         if self.accept(b'=').is_none() {
             self.expected_at(self.peek(), "expected `=`");
         }
@@ -212,10 +282,13 @@ impl<'a> Parser<'a> {
             self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
         } else if self.references.contains_key(name) {
             self.report(|| Diagnostic::error(Some(span), format!("a second parameter `{}`", clip(name))));
+        } else if self.program.value(name).is_some() {
+            self.report(|| Diagnostic::error(Some(span), format!("a second `{}`", clip(name))));
         } else {
-            let set = self.options.parameters.iter().rev().find(|(set, _)| set == name);
+            let set = self.options.parameters.iter().rev().find(|(set, _)| normalized(set) == name);
             let setting = set.map(|&(_, value)| value);
             let parameter = Parameter::declared(name, default, setting, span);
+            let parameter = if lost { parameter } else { self.control(parameter) };
             self.references.insert(name, parameter.reference());
             self.parameters.push(parameter);
         }
@@ -227,7 +300,7 @@ impl<'a> Parser<'a> {
         };
         let width_at = self.peek();
         let width = self.expression(ExpressionPlace::Alone);
-        self.declares(&width.number, width.span);
+        self.declares(Fixture::Declaration, &width.number, width.span);
         let (width, width_span) = (width.number.value(), width.span);
         let right = width.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width);
         if !right && !width.is_nan() {
@@ -245,7 +318,7 @@ impl<'a> Parser<'a> {
             let from = self.peek().start;
             let values = self.group_values(width);
             for number in &values {
-                self.declares(number, Span::new(from, self.previous_end()));
+                self.declares(Fixture::Declaration, number, Span::new(from, self.previous_end()));
             }
             default = Some(values.iter().map(Number::value).collect());
         }
@@ -263,11 +336,11 @@ impl<'a> Parser<'a> {
     }
 
     /// Marks the parameters of a number that stays as it is read.
-    fn declares(&mut self, number: &Number, span: Span) {
+    pub(super) fn declares(&mut self, what: Fixture, number: &Number, span: Span) {
         for (name, _) in number.formula().into_iter().flat_map(NumberFormula::parameters) {
             let declared = self.parameters.iter_mut().find(|parameter| parameter.name() == &**name);
             if let Some(parameter) = declared {
-                parameter.declares(span);
+                parameter.declares(what, span);
             }
         }
     }
@@ -281,7 +354,16 @@ impl<'a> Parser<'a> {
                         .expected("expected width 3")
                 });
             }
-            self.attributes[0] = group;
+            if !self.is_included() {
+                self.attributes[0] = group;
+            } else if self.attributes[0] != group {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "the scene declares `color` in another way")
+                        .expected("expected the same in a file that it includes, or nothing")
+                });
+            }
+        } else if self.is_included() && self.attributes.contains(&group) {
+            // A file that is included says again what it is about.
         } else if self.group(&name).is_some() {
             self.report(|| Diagnostic::error(Some(span), format!("a second attribute `{}`", clip(&name))));
         } else if self.attributes.len() == MAX_ATTRIBUTES {
@@ -309,14 +391,70 @@ impl<'a> Parser<'a> {
             self.lets.entry(name).or_insert_with(|| self.broken.clone());
             return;
         }
+        if self.begins_value() {
+            return self.let_value(name, span);
+        }
         let tree = self.tree();
-        if self.lets.insert(name, tree).is_some() {
+        let tree = self.with_name(tree, name);
+        if self.lets.insert(name, tree).is_some() || self.program.value(name).is_some() {
             self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
         }
     }
 
+    /// A value with a name.
+    fn let_value(&mut self, name: &'a str, span: Span) {
+        let value = self.value();
+        if self.lets.contains_key(name) {
+            self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
+        } else if is_builtin(name) || self.references.contains_key(name) {
+            let name = clip(name);
+            self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
+        } else if self.program.define(name, value.unwrap_or_else(Value::unknown)) {
+            self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
+        }
+    }
+
+    /// What may stand behind the default of a parameter: `in LOW .. HIGH step STEP "Label"`.
+    fn control(&mut self, mut parameter: Parameter) -> Parameter {
+        if self.peek_word() == Some("in") {
+            let start = self.next().start;
+            let number = |parser: &mut Self| {
+                let operand = parser.expression(ExpressionPlace::Alone);
+                parser.declares(Fixture::Declaration, &operand.number, operand.span);
+                operand.number.value()
+            };
+            let low = number(self);
+            if self.accept(RANGE).is_none() {
+                self.expected_at(self.peek(), "expected `..` and the largest value");
+                return parameter;
+            }
+            let high = number(self);
+            let step = self.accept_word("step").then(|| number(self));
+            let range = ParameterRange { low, high, step };
+            let span = Span::new(start, self.previous_end());
+            match range.fault().filter(|_| !(low.is_nan() || high.is_nan())) {
+                Some(fault) => {
+                    self.report(|| {
+                        Diagnostic::error(Some(span), "this range makes no sense").expected(fault)
+                    });
+                }
+                None => parameter = parameter.within(range),
+            }
+        }
+        if self.peek().kind == TokenKind::Quoted {
+            let token = self.next();
+            parameter = parameter.labelled(self.text(token).trim_matches('"'));
+        }
+        parameter
+    }
+
     fn root(&mut self, token: Token) {
-        let tree = self.tree();
+        for tree in self.nodes() {
+            self.add_root(token, tree);
+        }
+    }
+
+    fn add_root(&mut self, token: Token, tree: Tree) {
         // What could not be read is no root that another one would be the second beside.
         let broken = self.broken.identity();
         if self.root.as_ref().is_none_or(|root| root.identity() == broken) {
@@ -343,25 +481,34 @@ impl<'a> Parser<'a> {
                 Diagnostic::error(Some(end), "the file has no node").expected("expected the tree")
             });
         }
-        let report = std::mem::take(&mut self.report);
+        let mut report = std::mem::take(&mut self.report);
         match self.root {
-            Some(root) if report.is_empty() => Ok(Model {
-                iso: self.iso,
-                attributes: self.attributes,
-                root,
-                parameters: self.parameters,
-                origin: self.origin,
-                orientation: self.orientation.unwrap_or_default(),
-                source: None,
-            }),
-            _ => Err(report.finish()),
+            Some(root) if report.is_empty() => {
+                let model = Model {
+                    iso: self.iso,
+                    attributes: self.attributes,
+                    root,
+                    parameters: self.parameters,
+                    origin: self.origin,
+                    orientation: self.orientation.unwrap_or_default(),
+                    source: None,
+                    comments: self.comments,
+                };
+                Ok(if self.program.has_expanded { model.share() } else { model })
+            }
+            _ => {
+                if self.program.has_expanded {
+                    report.sort();
+                }
+                Err(report.finish())
+            }
         }
     }
 
     /// Values from outside are for parameters that exist, and are numbers.
     fn check_options(&mut self) {
         for (name, value) in &self.options.parameters {
-            if !self.references.contains_key(name.as_str()) {
+            if !self.references.contains_key(&*normalized(name)) {
                 self.report_with(|parser| unknown(name, &parser.parameters));
             } else if !value.is_finite() {
                 self.report(|| not_finite(name));

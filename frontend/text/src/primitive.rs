@@ -249,6 +249,6 @@ impl Parser<'_> {
             return self.broken.clone();
         };
         let written = Written::Primitive { skeleton: kind, fields, falloff, radius, strength };
-        Tree::at(span, written, Vec::new())
+        self.make(span, written, Vec::new())
     }
 }

@@ -4,23 +4,27 @@
 //! however many paths the graph has. Maps and attributes stand on one line with their child; operators open a
 //! line for each child, down to a depth where the indentation would outweigh the text.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
+use super::parse::ROOT;
 use super::particles::AT;
 use super::words::{
     COMMON_FIELDS, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
 };
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{CombinatorKind, Syntax};
+use jbt_model::diagnostic::escape;
 use jbt_model::expression::{Formula, write as write_formula};
 use jbt_model::falloff::FalloffKind;
 use jbt_model::field::{FieldKind, NumberText as _};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
+use jbt_model::parameter::{Parameter, ParameterRange};
 use jbt_model::particles::{NumberArray, ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
+use jbt_model::word::{is_identifier, is_statement};
 use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
     WrittenTextured, WrittenUv,
@@ -32,34 +36,69 @@ const DEEPEST: usize = 12;
 /// The model as text. See [`parse`](super::parse) for the promise.
 #[must_use]
 pub fn print(model: &Model) -> String {
-    let mut out = "jbt 1\n".to_owned();
+    let mut out = String::new();
+    comment(&mut out, model, "jbt");
+    out.push_str("jbt 1\n");
     for parameter in model.all_parameters() {
-        let _ = writeln!(out, "param {} = {}", parameter.name(), parameter.source());
+        comment(&mut out, model, &format!("param {}", parameter.name()));
+        print_parameter(&mut out, &parameter);
     }
+    comment(&mut out, model, "iso");
     let _ = writeln!(out, "iso {}", model.iso);
     if let Some(point) = model.origin {
+        comment(&mut out, model, "origin");
         let _ = writeln!(out, "origin {}", vector(point));
     }
     if model.orientation != Orientation::default() {
+        comment(&mut out, model, "orientation");
         let Orientation { up, handed } = model.orientation;
         let _ = writeln!(out, "orientation up {} handed {}", up.name(), handed.name());
     }
     for group in &model.attributes {
         if *group != AttributeGroup::color() {
+            comment(&mut out, model, &format!("attribute {}", group.name));
             declaration(&mut out, group);
         }
     }
     out.push('\n');
-    let (order, names) = shared(&model.root);
+    let (order, names) = shared(model);
     let printer = Printer { names, definitions: free_prefix(model) };
     for tree in order {
-        let _ = write!(out, "let n{} = ", printer.names[&tree.identity()]);
-        printer.tree(&mut out, tree);
+        let name = &printer.names[&tree.identity()];
+        comment(&mut out, model, &format!("let {name}"));
+        let _ = write!(out, "let {name} = ");
+        printer.tree(&mut out, tree, Some(name));
         out.push_str("\n\n");
     }
-    printer.tree(&mut out, &model.root);
+    comment(&mut out, model, ROOT);
+    printer.tree(&mut out, &model.root, None);
     out.push('\n');
     out
+}
+
+/// The comment in front of a statement.
+fn comment(out: &mut String, model: &Model, statement: &str) {
+    let lines = model.comments.get(statement).into_iter().flat_map(|text| text.lines());
+    for line in lines {
+        let line = escape(line);
+        // What is no comment would be a statement.
+        let mark = if line.is_empty() || line.starts_with('#') { "" } else { "# " };
+        let _ = writeln!(out, "{mark}{line}");
+    }
+}
+
+fn print_parameter(out: &mut String, parameter: &Parameter) {
+    let _ = write!(out, "param {} = {}", parameter.name(), parameter.source());
+    if let Some(ParameterRange { low, high, step }) = parameter.range() {
+        let _ = write!(out, " in {} .. {}", Number::from(low), Number::from(high));
+        if let Some(step) = step {
+            let _ = write!(out, " step {}", Number::from(step));
+        }
+    }
+    if let Some(label) = parameter.label() {
+        let _ = write!(out, " \"{label}\"");
+    }
+    out.push('\n');
 }
 
 fn vector(numbers: impl IntoIterator<Item = impl Into<Number>>) -> String {
@@ -96,14 +135,14 @@ fn free_prefix(model: &Model) -> String {
     prefix
 }
 
-/// The subtrees that need a name, since they have more than one use or stand in a formula, children before
-/// parents, and the number of each by its identity.
-fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
+/// The subtrees that stand by themselves, children before parents, and the name of each by its identity:
+/// those that have more than one use, that stand in a formula, or that have a comment.
+fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
-    let mut named = std::collections::HashSet::new();
+    let mut alone = HashSet::new();
     let mut finished = Vec::new();
     // A node is on the stack once before its children (false) and once after them (true).
-    let mut stack = vec![(root, false)];
+    let mut stack = vec![(&model.root, false)];
     while let Some((tree, done)) = stack.pop() {
         if done {
             finished.push(tree);
@@ -113,14 +152,34 @@ fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
         *count += 1;
         if *count == 1 {
             stack.push((tree, true));
-            if matches!(tree.node().written(), Written::Expression(_)) {
-                named.extend(tree.node().children().iter().map(Tree::identity));
+            let node = tree.node();
+            if matches!(node.written(), Written::Expression(_)) {
+                alone.extend(node.children().iter().map(Tree::identity));
             }
-            stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
+            let is_said =
+                |name: &str| is_statement(name) || model.comments.contains_key(&format!("let {name}"));
+            if node.name().is_some_and(is_said) {
+                alone.insert(tree.identity());
+            }
+            stack.extend(node.children().iter().rev().map(|child| (child, false)));
         }
     }
-    finished.retain(|tree| uses[&tree.identity()] > 1 || named.contains(&tree.identity()));
-    let names = finished.iter().enumerate().map(|(i, tree)| (tree.identity(), i + 1)).collect();
+    finished.retain(|tree| uses[&tree.identity()] > 1 || alone.contains(&tree.identity()));
+    let mut taken: HashSet<String> = model.all_parameters().iter().map(|one| one.name().to_owned()).collect();
+    let own: HashSet<&str> = finished.iter().filter_map(|tree| tree.node().name()).collect();
+    let mut next = 0;
+    let mut name = |tree: &Tree| match tree.node().name() {
+        // The first one of a name has it; others are named where they stand.
+        Some(name) if is_identifier(name) && taken.insert(name.to_owned()) => name.to_owned(),
+        Some(_) | None => loop {
+            next += 1;
+            let name = format!("n{next}");
+            if !own.contains(name.as_str()) && taken.insert(name.clone()) {
+                break name;
+            }
+        },
+    };
+    let names = finished.iter().map(|tree| (tree.identity(), name(tree))).collect();
     (finished, names)
 }
 
@@ -132,15 +191,18 @@ enum Item<'a> {
 }
 
 struct Printer {
-    names: HashMap<usize, usize>,
+    names: HashMap<usize, String>,
     /// What names of definitions begin with.
     definitions: String,
 }
 
 impl Printer {
-    /// A subtree, also if it has a name itself.
-    fn tree(&self, out: &mut String, root: &Tree) {
+    /// A subtree, also if it stands by itself. `said`: the name that stands in front of it already.
+    fn tree(&self, out: &mut String, root: &Tree, said: Option<&str>) {
         let mut stack = Vec::new();
+        if let Some(name) = root.node().name().filter(|name| said != Some(*name)) {
+            let _ = write!(out, "{name}: ");
+        }
         self.open(out, &mut stack, root, 0);
         while let Some(item) = stack.pop() {
             match item {
@@ -152,9 +214,14 @@ impl Printer {
                 Item::Line(_) => out.push(' '),
                 Item::Tree(tree, depth) => match self.names.get(&tree.identity()) {
                     Some(name) => {
-                        let _ = write!(out, "use n{name}");
+                        let _ = write!(out, "use {name}");
                     }
-                    None => self.open(out, &mut stack, tree, depth),
+                    None => {
+                        if let Some(name) = tree.node().name() {
+                            let _ = write!(out, "{name}: ");
+                        }
+                        self.open(out, &mut stack, tree, depth);
+                    }
                 },
             }
         }
@@ -164,7 +231,7 @@ impl Printer {
     fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
         let children = tree.node().children();
         let child = |place: usize| match children.get(place) {
-            Some(child) => format!("n{}", self.names[&child.identity()]),
+            Some(child) => self.names[&child.identity()].clone(),
             None => format!("missing{place}"),
         };
         match tree.node().written() {

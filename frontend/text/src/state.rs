@@ -5,26 +5,34 @@
 //! statement says where we are again.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
+use super::files::Files;
 use super::hints::foreign_mark;
 use super::import::particles::ParticleOptions;
 use super::lex::{Lexer, Token, TokenKind};
+use super::program::{Program, Value};
 use super::scope::FormulaScope;
+use super::texts::Texts;
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::model::Model;
+use jbt_model::label::Label;
+use jbt_model::model::{Comments, Model};
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
 use jbt_model::parameter::Parameter;
 use jbt_model::report::{Report, clip};
 use jbt_model::tree::Tree;
+use jbt_model::written::Written;
 
 /// What is set from outside a text.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Options {
     /// Values of parameters, by name; the last one of a name counts.
     pub parameters: Vec<(String, f64)>,
+    /// How files are opened that the text names. By default none are.
+    pub files: Files,
     /// The object to read, of a file that holds several; those that nothing refers to without it.
     pub object: Option<String>,
     /// What is said of particles, of a file that holds some.
@@ -34,6 +42,7 @@ pub struct Options {
 /// The state of reading one text.
 pub(super) struct Parser<'a> {
     pub(super) lexer: Lexer<'a>,
+    /// The scene's own text.
     pub(super) whole: &'a str,
     pub(super) report: Report,
     /// Messages are withheld, until we know again where we are in the text.
@@ -51,6 +60,8 @@ pub(super) struct Parser<'a> {
     pub(super) iso: Number,
     pub(super) iso_at: Option<Span>,
     pub(super) origin: Option<[f64; 3]>,
+    /// Of the scene's own text.
+    pub(super) comments: Comments,
     pub(super) orientation: Option<Orientation>,
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
@@ -59,10 +70,12 @@ pub(super) struct Parser<'a> {
     pub(super) ended: bool,
     /// Stands for every node that could not be read.
     pub(super) broken: Tree,
+    /// Names of values, definitions, files, and what may still be expanded.
+    pub(super) program: Program<'a>,
 }
 
 impl<'a> Parser<'a> {
-    pub(super) fn new(whole: &'a str, options: &'a Options) -> Self {
+    pub(super) fn new(whole: &'a str, texts: &'a Texts, options: &'a Options) -> Self {
         Self {
             lexer: Lexer::new(whole),
             whole,
@@ -78,11 +91,13 @@ impl<'a> Parser<'a> {
             iso: Model::DEFAULT_ISO.into(),
             iso_at: None,
             origin: None,
+            comments: Comments::new(),
             orientation: None,
             nodes: 0,
             root: None,
             ended: false,
             broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
+            program: Program::new(whole, texts, options),
         }
     }
 
@@ -115,11 +130,16 @@ impl<'a> Parser<'a> {
     }
 
     pub(super) fn text(&self, token: Token) -> &'a str {
-        self.lexer.text(token)
+        self.lexer.text(token.start, token.end).unwrap_or_else(|| self.source(token.span()))
     }
 
+    /// The bytes of a span, in whatever text it is.
     pub(super) fn source(&self, span: Span) -> &'a str {
-        &self.whole[span.start as usize..span.end as usize]
+        let (start, end) = (span.start as usize, span.end as usize);
+        match self.program.texts.text_at(start) {
+            Some(file) => &file.text[start - file.base..end - file.base],
+            None => &self.whole[start..end],
+        }
     }
 
     /// The next token, if it is a word.
@@ -147,7 +167,8 @@ impl<'a> Parser<'a> {
     /// Reports, wherever we are.
     pub(super) fn report(&mut self, make: impl FnOnce() -> Diagnostic) {
         if !self.stopped {
-            self.report.add(make);
+            let notes = || self.program.calls.as_ref().map(|calls| calls.notes()).unwrap_or_default();
+            self.report.add(|| Diagnostic { notes: notes(), ..make() });
         }
     }
 
@@ -209,7 +230,8 @@ impl<'a> Parser<'a> {
     /// Reports a limit and stops reading.
     pub(super) fn give_up(&mut self, limit: Diagnostic) {
         if !self.stopped {
-            self.report.add_last(limit);
+            let notes = self.program.calls.as_ref().map(|calls| calls.notes()).unwrap_or_default();
+            self.report.add_last(Diagnostic { notes, ..limit });
         }
         self.stopped = true;
         self.muted = true;
@@ -218,11 +240,29 @@ impl<'a> Parser<'a> {
 
     // Parameters.
 
+    /// The number of a name: an argument, a variable, a number with a name, or a parameter.
     pub(super) fn parameter(&self, name: &str) -> Option<&Number> {
-        self.references.get(name)
+        match self.program.value(name) {
+            Some(Value::Number(number)) => Some(number),
+            Some(Value::Numbers(_) | Value::List(_) | Value::Tree(_)) => None,
+            None => self.references.get(name),
+        }
     }
 
+    /// The names that stand for numbers or for lists of them.
     pub(super) fn parameter_names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().map(Parameter::name)
+        self.parameters.iter().map(Parameter::name).chain(self.program.value_names())
+    }
+
+    /// A node that is read here.
+    pub(super) fn make(&self, span: Span, written: impl Into<Written>, children: Vec<Tree>) -> Tree {
+        let tree = Tree::at(span, written, children);
+        match &self.program.calls {
+            None => tree,
+            Some(calls) => {
+                let label = Label { calls: Some(Arc::clone(calls)), ..Label::default() };
+                tree.labelled(Some(Arc::new(label)))
+            }
+        }
     }
 }

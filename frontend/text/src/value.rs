@@ -36,6 +36,9 @@ impl Parser<'_> {
     /// `( a b c )`, with blanks or commas between. Nothing after an error.
     pub(super) fn elements(&mut self) -> Option<Elements> {
         let open = self.peek();
+        if let Some(all) = self.bound_elements() {
+            return Some(all);
+        }
         if self.accept(b'(').is_none() {
             self.expected_at(open, "expected a vector: ( .. )");
             return None;
@@ -66,8 +69,16 @@ impl Parser<'_> {
     /// A number, or a vector. A vector of one element is a number in parentheses, which an operator may
     /// follow.
     pub(super) fn number_or_elements(&mut self) -> Option<Elements> {
+        self.number_or_elements_in(ExpressionPlace::Alone)
+    }
+
+    /// The same, in a list as well.
+    pub(super) fn number_or_elements_in(&mut self, place: ExpressionPlace) -> Option<Elements> {
         if !self.peek().is(b'(') {
-            let operand = self.expression(ExpressionPlace::Alone);
+            if let Some(all) = self.bound_elements() {
+                return Some(all);
+            }
+            let operand = self.expression(place);
             return (!self.is_muted()).then(|| Elements::one(operand));
         }
         let all = self.elements()?;
@@ -75,7 +86,7 @@ impl Parser<'_> {
             return Some(all);
         };
         let first = ParsedOperand { number: number.clone(), span: all.span };
-        let operand = self.expression_from(ExpressionPlace::Alone, &first);
+        let operand = self.expression_from(place, &first);
         (!self.is_muted()).then(|| Elements::one(operand))
     }
 
@@ -177,10 +188,14 @@ impl Parser<'_> {
                 None => FieldNumber::Vector(self.vector()),
             },
             FieldKind::Choice(words) => FieldValue::Real(self.choice(words)).into(),
-            FieldKind::Positions => FieldNumber::Vectors(self.list(Self::vector)),
-            FieldKind::Lengths => {
-                FieldNumber::Reals(self.list(|parser| parser.expression(ExpressionPlace::Element).number))
-            }
+            FieldKind::Positions => FieldNumber::Vectors(match self.bound_list(3) {
+                Some(list) => list.into_iter().filter_map(|numbers| numbers.try_into().ok()).collect(),
+                None => self.list(Self::vector),
+            }),
+            FieldKind::Lengths => FieldNumber::Reals(match self.bound_list(1) {
+                Some(list) => list.into_iter().flatten().collect(),
+                None => self.list(|parser| parser.expression(ExpressionPlace::Element).number),
+            }),
             FieldKind::Flag => FieldValue::Real(self.flag()).into(),
             FieldKind::Rows => FieldNumber::Reals(self.vector::<12>().into()),
             FieldKind::Axis => {

@@ -1,8 +1,8 @@
 //! The example scenes: they are read, make sense, print as themselves, and fit into the box from -2 to 2.
 
 use jbt_model::diagnostic::{Diagnostics, Source};
-use jbt_testkit::scene::{assert_reads_back, examples};
-use jbt_text::{Options, parse};
+use jbt_testkit::scene::{assert_reads_back, examples, options};
+use jbt_text::parse;
 
 #[test]
 fn every_example_is_a_model() {
@@ -12,8 +12,7 @@ fn every_example_is_a_model() {
         let shown = |errors: Diagnostics| -> String {
             errors.iter().map(|error| source.render(error) + "\n").collect()
         };
-        let model =
-            parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{}", shown(errors)));
+        let model = parse(text.as_bytes(), &options()).unwrap_or_else(|errors| panic!("{}", shown(errors)));
         let checked = model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)));
         assert_reads_back(&model);
         let support = checked.support();

@@ -79,7 +79,7 @@ fn rust_and_text_make_the_same_form() {
     assert_eq!(model.root.node().written(), tree.node().written());
     assert_eq!(
         print(&model).lines().last().unwrap(),
-        "expression within (-1 -1 -1) to (1 1 1) { t1 = sqrt(x * x + y^2), t1 - p * sin(8 * t1) + field(n1) }"
+        "expression within (-1 -1 -1) to (1 1 1) { t1 = sqrt(x * x + y^2), t1 - p * sin(8 * t1) + field(ball) }"
     );
     assert_eq!(read(&print(&model)), model);
 }

@@ -3,11 +3,12 @@
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 use jbt::contour::{Detail, ImageDetail, ImageMode, Plane, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
-use jbt::{CheckedTree, Compiler, Diagnostics, Fineness, Picture, Query, text};
+use jbt::{CheckedTree, Compiler, Diagnostics, Fineness, Picture, Query, SceneFolder, text};
 
 use crate::list::{Drawing, Entry, Scene};
 use crate::splash;
@@ -76,7 +77,9 @@ fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
     };
     let name = name.display().to_string();
     let named = |error: Diagnostics| error.named(&name);
-    let model = text::parse(text.as_bytes(), &text::Options::default()).map_err(named)?;
+    let files = text::files::Files::new(Arc::new(SceneFolder::of(&name)));
+    let options = text::Options { files, ..text::Options::default() };
+    let model = text::parse(text.as_bytes(), &options).map_err(named)?;
     Ok(model.check().map_err(named)?)
 }
 

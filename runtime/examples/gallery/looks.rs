@@ -21,9 +21,10 @@ struct Look {
 const USUAL: Look = Look { from: [1.0, -0.62, 0.5], size: [400, 300], zoom: 1.0 };
 
 /// The looks of examples that have one of their own.
-const LOOKS: [(&str, Look); 18] = [
+const LOOKS: [(&str, Look); 19] = [
     ("attributes", Look { from: [1.0, -0.2, 0.35], ..USUAL }),
     ("blend", Look { from: [1.0, -0.3, 1.4], size: [400, 266], ..USUAL }),
+    ("castle", Look { from: [0.5, -1.0, 0.55], size: [1200, 900], ..USUAL }),
     ("circles", Look { from: [0.3, -1.0, 2.2], size: [400, 266], ..USUAL }),
     ("falloffs", Look { from: [1.0, -0.12, 1.1], size: [400, 250], ..USUAL }),
     ("gyroid", Look { size: [900, 675], ..USUAL }),

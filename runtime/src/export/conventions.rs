@@ -29,6 +29,8 @@ pub struct Conventions {
     pub uv: Option<&'static str>,
     /// How it has other attributes, if it has any.
     pub attributes: Option<&'static str>,
+    /// How it has the name of a mesh, if it has.
+    pub name: Option<&'static str>,
     /// How it has the place of a mesh that is far from the origin of the world.
     pub far: FarMeshes,
     /// Whether a vertex on an edge of the surface is there once for each side, because a vertex has one
@@ -196,7 +198,7 @@ impl ColorEncoding {
 
 /// What a file is like: what options say, else the conventions of its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FileChoices {
+pub(super) struct FileChoices<'a> {
     pub up: Up,
     /// The axis of the model that points up.
     pub model: ModelUp,
@@ -206,9 +208,11 @@ pub(super) struct FileChoices {
     pub unit: LengthUnit,
     /// The most materials, in a format that has any.
     pub palette: Option<NonZeroU16>,
+    /// What the mesh is called, where the format has a place for it.
+    pub name: Option<&'a str>,
 }
 
-impl FileChoices {
+impl FileChoices<'_> {
     /// Where a point of the model, or a direction, is in the file.
     pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match (self.model, self.up) {

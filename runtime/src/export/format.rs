@@ -34,7 +34,7 @@ macro_rules! formats {
             pub(super) fn write(
                 self,
                 mesh: &Mesh,
-                choices: FileChoices,
+                choices: FileChoices<'_>,
                 out: &mut impl Write,
             ) -> Result<(), WriteError> {
                 match self { $( Format::$variant => $module::write(mesh, choices, out), )+ }
@@ -82,7 +82,7 @@ impl Format {
 
 /// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what
 /// [`Conventions`] say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExportOptions {
     /// The axis of the file that points up.
@@ -93,6 +93,8 @@ pub struct ExportOptions {
     pub unit: Option<LengthUnit>,
     /// At most so many materials, each triangle of one, in a format that has any: for printers.
     pub palette: Option<NonZeroU16>,
+    /// What the mesh is called, in a format that has a place for it: see [`Conventions::name`].
+    pub name: Option<String>,
 }
 
 impl ExportOptions {
@@ -115,14 +117,15 @@ impl ExportOptions {
     }
 }
 
-impl FileChoices {
-    pub(super) fn new(mesh: &Mesh, format: Format, options: &ExportOptions) -> Self {
+impl<'a> FileChoices<'a> {
+    pub(super) fn new(mesh: &Mesh, format: Format, options: &'a ExportOptions) -> Self {
         Self {
             up: options.up_in(format),
             model: mesh.orientation.up,
             colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear),
             unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
             palette: options.palette,
+            name: options.name.as_deref(),
         }
     }
 }

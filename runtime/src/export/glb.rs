@@ -50,15 +50,20 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`COLOR_0`, 32-bit floats", encoding: ColorEncoding::Linear }),
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
+    name: Some("node and mesh"),
     far: FarMeshes::Node,
     splits: true,
     materials: false,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
-    let (json, binary) = describe(mesh, choices, &attributes);
+    let (mut json, binary) = describe(mesh, choices, &attributes);
+    if let Some(name) = choices.name.filter(|_| binary > 0) {
+        json["nodes"][0]["name"] = json!(name);
+        json["meshes"][0]["name"] = json!(name);
+    }
     // Printing a JSON value cannot fail.
     let mut text = json.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -94,7 +99,7 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
 
 fn write_binary(
     mesh: &Mesh,
-    choices: FileChoices,
+    choices: FileChoices<'_>,
     attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
@@ -157,7 +162,7 @@ impl BufferLayout {
 }
 
 /// The JSON text, and how many bytes the binary chunk has.
-fn describe(mesh: &Mesh, choices: FileChoices, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
+fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
     let asset = json!({ "version": "2.0", "generator": "jbt" });
     if mesh.triangles.is_empty() {
         return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
@@ -207,7 +212,7 @@ fn describe(mesh: &Mesh, choices: FileChoices, attributes: &[NamedAttribute<'_>]
 
 /// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node
 /// turns it there, then moves it to its origin.
-fn node(mesh: &Mesh, choices: FileChoices) -> Value {
+fn node(mesh: &Mesh, choices: FileChoices<'_>) -> Value {
     // A quaternion (x, y, z, w): by 90 degrees about x, one way or the other.
     let turned = |x: f64| json!({ "mesh": 0, "rotation": [x, 0.0, 0.0, FRAC_1_SQRT_2] });
     let mut node = match (choices.model, choices.up) {

@@ -19,15 +19,21 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "behind the position, decimals", encoding: ColorEncoding::Srgb }),
     uv: Some("`vt`"),
     attributes: None,
+    name: Some("`o`"),
     far: FarMeshes::Digits,
     splits: false,
     materials: false,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let FileChoices { up, colors: encoding, .. } = choices;
     writeln!(out, "# jbt, {up} up")?;
+    if let Some(name) = choices.name {
+        // A blank would end the name for some readers.
+        let name = name.replace(|c: char| c.is_whitespace() || c.is_control(), "_");
+        writeln!(out, "o {name}")?;
+    }
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
     }
@@ -78,7 +84,7 @@ fn normals_of(mesh: &Mesh, triangle: usize) -> [u64; 3] {
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    choices: FileChoices,
+    choices: FileChoices<'_>,
     position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

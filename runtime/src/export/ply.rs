@@ -23,13 +23,14 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`red green blue`, 8 bits", encoding: ColorEncoding::Srgb }),
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
+    name: None,
     far: FarMeshes::Digits,
     splits: true,
     materials: false,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let FileChoices { up, colors: encoding, .. } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));

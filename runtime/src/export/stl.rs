@@ -28,13 +28,14 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: None,
     uv: None,
     attributes: None,
+    name: None,
     far: FarMeshes::Rounded,
     splits: false,
     materials: false,
     unit: None,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let size = mesh.triangles.len() as u64;
     let Ok(count) = u32::try_from(size) else {
         return Err(WriteError::TooLarge(size));

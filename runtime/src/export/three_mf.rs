@@ -22,6 +22,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`colorgroup`, 8 bits", encoding: ColorEncoding::Srgb }),
     uv: None,
     attributes: None,
+    name: Some("`name` of the object"),
     far: FarMeshes::Node,
     splits: false,
     materials: true,
@@ -38,7 +39,11 @@ const RELATIONS: &str = "<Relationships xmlns=\"http://schemas.openxmlformats.or
 const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 const MATERIALS: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, mut out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(
+    mesh: &Mesh,
+    choices: FileChoices<'_>,
+    mut out: &mut impl Write,
+) -> Result<(), WriteError> {
     let mut archive = Archive::new(&mut out);
     archive.add("[Content_Types].xml", |out| Ok(write!(out, "{HEAD}{TYPES}")?))?;
     archive.add("_rels/.rels", |out| Ok(write!(out, "{HEAD}{RELATIONS}")?))?;
@@ -58,7 +63,7 @@ const fn unit(unit: LengthUnit) -> &'static str {
     }
 }
 
-fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(), WriteError> {
+fn model(mesh: &Mesh, choices: FileChoices<'_>, mut out: &mut dyn Write) -> Result<(), WriteError> {
     let FileChoices { colors: encoding, unit: length, .. } = choices;
     write!(out, "{HEAD}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{CORE}\"", unit(length))?;
     if colors(mesh).is_some() && choices.palette.is_none() {
@@ -79,7 +84,8 @@ fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(
         palette.write(choices.palette.is_some(), out)?;
     }
     let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
-    writeln!(out, "<object id=\"2\" type=\"model\"{group}>\n<mesh>\n<vertices>")?;
+    let name = choices.name.map_or_else(String::new, |name| format!(" name=\"{}\"", in_quotes(name)));
+    writeln!(out, "<object id=\"2\" type=\"model\"{name}{group}>\n<mesh>\n<vertices>")?;
     write_items(&mut out, mesh.positions.len(), |vertex, bytes| {
         let [x, y, z] = choices.place(mesh.positions[vertex]);
         writeln!(bytes, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")
@@ -105,6 +111,22 @@ fn model(mesh: &Mesh, choices: FileChoices, mut out: &mut dyn Write) -> Result<(
     };
     writeln!(out, "<item objectid=\"2\"{moved}/>\n</build>\n</model>")?;
     Ok(())
+}
+
+/// A text as the value of an attribute of XML 1.0, which has no control characters.
+fn in_quotes(text: &str) -> String {
+    let mut quoted = String::new();
+    for char in text.chars() {
+        match char {
+            '&' => quoted.push_str("&amp;"),
+            '<' => quoted.push_str("&lt;"),
+            '"' => quoted.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => quoted.push('_'),
+            char if char.is_control() => quoted.push('_'),
+            char => quoted.push(char),
+        }
+    }
+    quoted
 }
 
 /// The colours of a mesh, each once, and the places of those of the corners of each triangle.

@@ -20,6 +20,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     colors: Some(Colors { place: "`displayColor`, decimals", encoding: ColorEncoding::Linear }),
     uv: Some("`st`"),
     attributes: Some("`primvars`, decimals"),
+    name: Some("`displayName`"),
     far: FarMeshes::Node,
     splits: true,
     materials: false,
@@ -29,7 +30,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
 /// Names that are always what they are.
 const RESERVED: [&str; 2] = ["displayColor", "st"];
 
-pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write) -> Result<(), WriteError> {
     let FileChoices { up, colors: encoding, unit, .. } = choices;
     let axis = match up {
         Up::Y => "Y",
@@ -43,7 +44,12 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         writeln!(out, "    double3 xformOp:translate = ({x}, {y}, {z})")?;
         writeln!(out, "    uniform token[] xformOpOrder = [\"xformOp:translate\"]")?;
     }
-    writeln!(out, "    def Mesh \"mesh\"\n    {{")?;
+    let name = choices.name.map_or_else(String::new, |name| {
+        // Line ends and quotes would end it.
+        let name = name.replace(['\\', '"'], "_").replace(char::is_control, "_");
+        format!(" (\n        displayName = \"{name}\"\n    )")
+    });
+    writeln!(out, "    def Mesh \"mesh\"{name}\n    {{")?;
     let corner = |pick: fn(f32, f32) -> f32| {
         let all = mesh.positions.iter().map(|&position| choices.place(position));
         all.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis]))).unwrap_or_default()

@@ -90,7 +90,8 @@ impl SurfacePaint {
 
 /// Whether any part of a model has a colour.
 fn is_colored(tree: &CheckedTree) -> bool {
-    let is_white = tree.attributes()[0].default.iter().all(|&channel| channel == 1.0);
+    let color = tree.attributes().iter().find(|group| &*group.name == "color");
+    let is_white = color.is_none_or(|color| color.default.iter().all(|&channel| channel == 1.0));
     let gives = |kind: &NodeKind| match kind {
         NodeKind::Attribute { name, .. } => &**name == "color",
         NodeKind::Particles(particles) => particles.values_of("color").is_some(),

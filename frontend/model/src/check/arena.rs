@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::NodeKind;
+use crate::label::Label;
 use crate::report::Report;
 
 /// The name of a node of a checked tree: its index in [`CheckedTree::nodes`](super::CheckedTree::nodes).
@@ -26,6 +27,16 @@ pub struct CheckedNode {
     /// Where it stands in its source text: a primitive from its name to `}`, a node with children its words
     /// before the block. Errors of the check about any of its numbers have this place.
     pub span: Option<Span>,
+    /// What its text says about it besides what it means.
+    pub label: Option<Arc<Label>>,
+}
+
+impl CheckedNode {
+    /// Its name, if it has one.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.label.as_ref()?.name.as_deref()
+    }
 }
 
 /// Which nodes of a tree differ from those of the tree that it was made of.

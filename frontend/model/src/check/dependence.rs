@@ -1,6 +1,6 @@
 //! Which nodes of a checked tree follow which parameters.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::arena::NodeId;
@@ -68,6 +68,18 @@ impl Dependence {
         let nodes = self.nodes.iter();
         let nodes = nodes.filter_map(|(id, written)| Some((name(id)?, Arc::clone(written)))).collect();
         Self { iso: self.iso.clone(), nodes, ..Self::default() }
+    }
+
+    /// The same without some nodes, which depend on nothing any more.
+    pub(super) fn without(&self, left_out: &HashSet<NodeId>) -> Self {
+        let stays = |id: &NodeId| !left_out.contains(id);
+        let kept = |list: &Vec<NodeId>| list.iter().copied().filter(stays).collect();
+        Self {
+            nodes: self.nodes.iter().filter(|(id, _)| stays(id)).cloned().collect(),
+            mentions: self.mentions.iter().map(kept).collect(),
+            surfaces: kept(&self.surfaces),
+            ..self.clone()
+        }
     }
 
     /// The nodes that can change with these parameters, ascending.

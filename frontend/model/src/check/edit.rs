@@ -177,6 +177,7 @@ impl CheckedModel {
                     is_whole &= !(counts_elsewhere(&old.kind) || counts_elsewhere(&kind));
                     is_whole &= particles_in(&old.kind) == particles_in(&kind);
                     (old.kind, old.span) = (kind, node.span());
+                    old.label = node.label().cloned();
                 }
                 Err(error) => report.add(|| error),
             }
@@ -258,6 +259,7 @@ impl CheckedTree {
                 kind: node.kind.clone(),
                 children: node.children.iter().filter_map(place).collect(),
                 span: node.span,
+                label: node.label.clone(),
             }
         };
         let nodes: Vec<CheckedNode> = left.iter().map(node).collect();

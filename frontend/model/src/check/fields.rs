@@ -24,7 +24,7 @@ pub(super) fn check_fields(
     fields: &[Field],
     values: &[FieldValue],
 ) -> bool {
-    let before = report.len();
+    let before = report.count();
     for (field, value) in fields.iter().zip(values) {
         let what = format_args!("the `{}` of the {owner}", field.name);
         match field.kind {
@@ -74,7 +74,7 @@ pub(super) fn check_fields(
             }
         }
     }
-    report.len() == before
+    report.count() == before
 }
 
 /// Checks a formula with this number of values and children, and its falloffs.

@@ -13,8 +13,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::kind::NodeKind;
 use crate::model::Model;
 use crate::number::{Number, NumberFormula, ParameterValues};
-use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
+use crate::parameter::{Fixture, Parameter, is_name, not_finite, refresh, unknown};
 use crate::report::{Report, clip};
+use crate::word::normalized;
 use crate::written::Written;
 
 /// The kind of a node for these values of parameters.
@@ -72,6 +73,25 @@ pub(super) fn check_names(report: &mut Report, parameters: &[Parameter]) {
                     .expected("expected a finite number")
             });
         }
+        check_control(report, parameter);
+    }
+}
+
+/// Its range and its label have to make sense, and its value is in the range. What a default that depends on
+/// other parameters is has been refreshed.
+fn check_control(report: &mut Report, parameter: &Parameter) {
+    let (name, span) = (clip(&parameter.name), parameter.span);
+    if let Some(fault) = parameter.range().and_then(|range| range.fault()) {
+        report
+            .add(|| Diagnostic::error(span, format!("the range of `{name}` makes no sense")).expected(fault));
+    } else if let Some(error) = parameter.out_of_range() {
+        report.add(|| error);
+    }
+    if parameter.label().is_some_and(|label| label.contains(['"', '\n', '\r'])) {
+        report.add(|| {
+            Diagnostic::error(span, format!("the label of `{name}` has a quote or a line end"))
+                .expected("expected words on one line")
+        });
     }
 }
 
@@ -100,7 +120,9 @@ impl Model {
             match place.map(|place| &mut parameters[place]) {
                 None => report.add(|| unknown(name, &parameters)),
                 Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
-                Some(Parameter { name, declares: Some(place), .. }) => report.add(|| declares(name, *place)),
+                Some(Parameter { name, declares: Some((what, place)), .. }) => {
+                    report.add(|| declares(name, *what, *place));
+                }
                 Some(parameter) => parameter.setting = Some(value),
             }
         }
@@ -148,7 +170,7 @@ impl CheckedTree {
         let mut report = Report::default();
         let mut parameters = self.parameters.clone();
         for &(name, value) in settings {
-            match self.dependence.names.get(name) {
+            match self.dependence.names.get(&*normalized(name)) {
                 None => report.add(|| unknown(name, &self.parameters)),
                 Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
                 Some(&index) => parameters[index].setting = Some(value),
@@ -164,8 +186,11 @@ impl CheckedTree {
             .map(|(new, old)| new.value().to_bits() != old.value().to_bits())
             .collect();
         for (parameter, _) in parameters.iter().zip(&moved).filter(|(_, moved)| **moved) {
-            if let Some(place) = parameter.declares {
-                report.add(|| declares(&parameter.name, place));
+            if let Some((what, place)) = parameter.declares {
+                report.add(|| declares(&parameter.name, what, place));
+            }
+            if let Some(error) = parameter.out_of_range() {
+                report.add(|| Diagnostic { span: None, ..error });
             }
         }
         let iso = match &self.dependence.iso {
@@ -213,6 +238,7 @@ impl CheckedTree {
         for &id in &affected {
             let node = &mut nodes[id.0 as usize];
             let written = self.dependence.written(id).expect("affected nodes are kept as written");
+            let errors = report.count();
             match evaluate(written, values, iso, node.span) {
                 Ok(kind) => {
                     check_node(report, &kind, node.children.len(), node.span, &groups, iso);
@@ -221,6 +247,7 @@ impl CheckedTree {
                 }
                 Err(error) => report.add(|| error),
             }
+            report.expanded_in(errors, node.label.as_ref());
         }
         // A curve may have more pieces now.
         if in_pieces && report.is_empty() {
@@ -268,7 +295,17 @@ pub(super) fn is_in_pieces(kind: &NodeKind) -> bool {
     }
 }
 
-fn declares(name: &str, place: Span) -> Diagnostic {
-    let message = format!("`{}` stands in a declaration, which stays as it was read", clip(name));
-    Diagnostic::error(Some(place), message).expected("set it before the text is read")
+fn declares(name: &str, what: Fixture, place: Span) -> Diagnostic {
+    let name = clip(name);
+    let (message, help) = match what {
+        Fixture::Declaration => (
+            format!("`{name}` stands in a declaration, which stays as it was read"),
+            "set it before the text is read",
+        ),
+        Fixture::Expansion => (
+            format!("`{name}` decides which nodes there are, and they stay as they were read"),
+            "set it before the text is read: `Scene::with_parameters` reads it again, and it is compiled again",
+        ),
+    };
+    Diagnostic::error(Some(place), message).expected(help)
 }

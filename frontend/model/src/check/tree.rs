@@ -137,12 +137,16 @@ impl CheckedTree {
         leaf: Primitive,
         maps: impl IntoIterator<Item = (NodeKind, Option<NodeId>)>,
     ) -> Self {
-        let mut nodes =
-            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Children::new(), span: None }];
+        let mut nodes = vec![CheckedNode {
+            kind: NodeKind::Primitive(leaf),
+            children: Children::new(),
+            span: None,
+            label: None,
+        }];
         for (kind, weight) in maps {
             let mut children = Children::from_slice(&[NodeId(nodes.len() as u32 - 1)]);
             children.extend(weight.map(|weight| self.copy_below(weight, &mut nodes)));
-            nodes.push(CheckedNode { kind, children, span: None });
+            nodes.push(CheckedNode { kind, children, span: None, label: None });
         }
         self.of_nodes(nodes)
     }
@@ -168,7 +172,7 @@ impl CheckedTree {
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
         let children = Children::from_slice(&[self.root()]);
-        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None });
+        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None, label: None });
         let mapped = || ModelOrigin::new(map.transform_point3(self.origin.point().into()).to_array());
         let origin = if self.origin.is_world() { self.origin } else { mapped() };
         Self { origin, ..self.of_nodes(nodes) }

@@ -8,13 +8,25 @@ use std::sync::Arc;
 
 use jbt_ir::limits::MAX_SCENE_BYTES;
 
-use super::{Diagnostic, Source, escape};
+use super::{Diagnostic, Note, Source, Span, escape};
 
 /// A source text and its name, kept for messages. Cloning shares both.
 #[derive(Clone)]
 pub struct SourceText {
     name: Arc<str>,
     text: Arc<[u8]>,
+    included: Arc<[IncludedText]>,
+}
+
+/// A text that another one includes. Its places are bytes behind those of the texts before it.
+#[derive(Clone, Debug)]
+pub struct IncludedText {
+    /// The path of its file.
+    pub name: Arc<str>,
+    /// Its bytes.
+    pub text: Arc<[u8]>,
+    /// The place of its first byte.
+    pub start: usize,
 }
 
 impl SourceText {
@@ -25,7 +37,54 @@ impl SourceText {
     /// are not kept, as nobody reads them.
     #[must_use]
     pub fn new(name: &str, text: &[u8]) -> Self {
-        Self { name: name.into(), text: text[..text.len().min(MAX_SCENE_BYTES)].into() }
+        let text = text[..text.len().min(MAX_SCENE_BYTES)].into();
+        Self { name: name.into(), text, included: Arc::default() }
+    }
+
+    /// The same with the texts that it includes, in the order of their places.
+    #[must_use]
+    pub fn including(self, texts: Vec<IncludedText>) -> Self {
+        Self { included: texts.into(), ..self }
+    }
+
+    /// The texts that it includes, directly or not.
+    #[must_use]
+    pub fn included(&self) -> &[IncludedText] {
+        &self.included
+    }
+
+    /// The text that a place is in, and the place of that text's first byte.
+    #[must_use]
+    pub fn text_at(&self, byte: usize) -> (Source<'_>, usize) {
+        let index = self.included.partition_point(|text| text.start <= byte);
+        match index.checked_sub(1).map(|index| &self.included[index]) {
+            Some(text) => (Source { name: &text.name, text: &text.text }, text.start),
+            None => (self.source(), 0),
+        }
+    }
+
+    /// A diagnostic with its place in the one text that it is in, and the places of its notes as words.
+    #[must_use]
+    pub fn located(&self, diagnostic: &Diagnostic) -> (Source<'_>, Diagnostic) {
+        let start = diagnostic.span.map_or(0, |span| span.start as usize);
+        let (source, base) = self.text_at(start);
+        let moved = |span: Span| Span::new(span.start as usize - base, (span.end as usize).max(base) - base);
+        let notes = diagnostic.notes.iter().map(|note| {
+            let Some(span) = note.span else { return note.clone() };
+            let (source, base) = self.text_at(span.start as usize);
+            let (line, column) = source.position(span.start as usize - base);
+            let message = format!("{} at {}:{line}:{column}", note.message, source.name);
+            Note { span: None, message }
+        });
+        let (span, notes) = (diagnostic.span.map(moved), notes.collect());
+        (source, Diagnostic { span, notes, ..diagnostic.clone() })
+    }
+
+    /// The diagnostic as people read it: see [`Source::render`].
+    #[must_use]
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        let (source, located) = self.located(diagnostic);
+        source.render(&located)
     }
 
     /// The same text under another name.
@@ -46,7 +105,7 @@ impl SourceText {
         &self.text
     }
 
-    /// What shows diagnostics.
+    /// What shows diagnostics about the text itself, not about those that it includes.
     #[must_use]
     pub fn source(&self) -> Source<'_> {
         Source { name: &self.name, text: &self.text }
@@ -131,11 +190,12 @@ impl Diagnostics {
 
     fn show(&self, diagnostic: &Diagnostic) -> String {
         if let Some(source) = &self.source {
-            return source.source().render(diagnostic);
+            return source.render(diagnostic);
         }
-        let help = diagnostic.help.iter().map(|help| format!("\n  {}", escape(help)));
+        let notes = diagnostic.notes.iter().map(|note| &note.message);
+        let below = diagnostic.help.iter().chain(notes).map(|line| format!("\n  {}", escape(line)));
         let mut shown = format!("{}: {}", diagnostic.severity.name(), escape(&diagnostic.message));
-        shown.extend(help);
+        shown.extend(below);
         shown
     }
 }

@@ -9,7 +9,13 @@ use crate::written::Written;
 
 /// Any tree.
 #[derive(Clone, Copy)]
-struct PlainNodes<'a>(PhantomData<&'a Tree>);
+pub(super) struct PlainNodes<'a>(PhantomData<&'a Tree>);
+
+impl PlainNodes<'_> {
+    pub(super) const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
 
 impl<'a> Nodes for PlainNodes<'a> {
     type Node = &'a Tree;
@@ -59,11 +65,13 @@ impl Tree {
 
     /// The same node, written in another way.
     pub(crate) fn with_written(&self, written: Written) -> Self {
-        Self::assemble(written, self.node().children().to_vec(), self.node().span())
+        let node = self.node();
+        Self::assemble(written, node.children().to_vec(), node.span()).labelled(node.label().cloned())
     }
 
     /// The same node over other children.
     pub(crate) fn with_children(&self, children: Vec<Self>) -> Self {
-        Self::assemble(self.node().written().clone(), children, self.node().span())
+        let node = self.node();
+        Self::assemble(node.written().clone(), children, node.span()).labelled(node.label().cloned())
     }
 }

@@ -9,7 +9,7 @@ use jbt_testkit::samples;
 use jbt_text::Options;
 use jbt_text::import::{self, Imported};
 
-use crate::common::{bad, compare, ends, field, files, good, messages, near, truncated};
+use crate::common::{SOON, bad, compare, ends, field, files, good, messages, near, truncated};
 
 fn pov(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     import::pov(bytes, &Options::default())
@@ -365,6 +365,6 @@ fn hostile_files_end_soon() {
     ];
     for text in all {
         let took = ends(pov, text.as_bytes());
-        assert!(took < Duration::from_secs(1), "{took:?}: {}", &text[..80.min(text.len())]);
+        assert!(took < SOON, "{took:?}: {}", &text[..80.min(text.len())]);
     }
 }

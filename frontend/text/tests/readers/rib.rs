@@ -4,7 +4,7 @@ use jbt_model::walk::walk;
 use jbt_testkit::samples;
 use jbt_text::import::rib;
 
-use crate::common::{bad, compare, ends, field, files, good, messages, near, truncated};
+use crate::common::{SOON, bad, compare, ends, field, files, good, messages, near, truncated};
 
 #[test]
 fn every_sample_agrees_with_its_table() {
@@ -231,6 +231,6 @@ fn hostile_files_end_soon() {
     ];
     for text in all {
         let took = ends(rib, text.as_bytes());
-        assert!(took < std::time::Duration::from_secs(1), "{took:?}: {}", &text[..40.min(text.len())]);
+        assert!(took < SOON, "{took:?}: {}", &text[..40.min(text.len())]);
     }
 }

@@ -1,13 +1,12 @@
 //! Trees of three-js-blobtree.
 
 use std::fmt::Write as _;
-use std::time::Duration;
 
 use jbt_model::walk::walk;
 use jbt_testkit::samples;
 use jbt_text::import::{Imported, threejs};
 
-use crate::common::{bad, compare, ends, field, files, good, messages, near, truncated};
+use crate::common::{SOON, bad, compare, ends, field, files, good, messages, near, truncated};
 
 #[test]
 fn every_sample_agrees_with_its_table() {
@@ -369,7 +368,7 @@ fn hostile_files_end_soon() {
     ];
     for text in all {
         let took = ends(threejs, text.as_bytes());
-        assert!(took < Duration::from_secs(1), "{took:?}: {}", &text[..60.min(text.len())]);
+        assert!(took < SOON, "{took:?}: {}", &text[..60.min(text.len())]);
     }
     let mut bytes = BIRD.to_vec();
     bytes[12] = 0xff;

@@ -1,0 +1,103 @@
+//! What is asked for at a point: answers by their words, and groups of attributes by their names.
+
+use std::fmt;
+
+use clap::builder::{PossibleValue, TypedValueParser};
+use jbt::tree::OWNER;
+use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
+
+/// Answers, and the groups of attributes among them if not all are wanted.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Wanted {
+    /// The answers.
+    pub query: Query,
+    /// The groups; nothing for all of them.
+    groups: Option<Vec<String>>,
+}
+
+impl Wanted {
+    /// Words with commas between: those of queries, and names of groups.
+    fn parse(text: &str) -> Self {
+        let mut wanted = Self { query: Query::FIELD, groups: None };
+        let (mut all, mut groups) = (false, Vec::new());
+        for word in text.split(',').map(str::trim) {
+            match word.parse::<Query>() {
+                Ok(query) => {
+                    wanted.query = query.answers().fold(wanted.query, Query::and);
+                    all |= query.contains(AnswerKind::Attributes);
+                }
+                Err(_) => groups.push(word.to_owned()),
+            }
+        }
+        if !groups.is_empty() && !all {
+            wanted.query = wanted.query.and(AnswerKind::Attributes);
+            wanted.groups = Some(groups);
+        }
+        wanted
+    }
+
+    /// The tree that answers for the groups that are wanted.
+    ///
+    /// # Errors
+    /// A word that is neither that of an answer nor the name of a group.
+    pub fn of(&self, tree: CheckedTree) -> Result<CheckedTree, Diagnostics> {
+        let Some(groups) = &self.groups else { return Ok(tree) };
+        let has_own = tree.attributes().iter().any(|group| &*group.name == OWNER);
+        let asks_owner = groups.iter().any(|name| name == OWNER);
+        if asks_owner && !has_own { tree.with_owners()? } else { tree }.of_attributes(groups)
+    }
+}
+
+impl From<Query> for Wanted {
+    fn from(query: Query) -> Self {
+        Self { query, groups: None }
+    }
+}
+
+impl fmt::Display for Wanted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.query.fmt(f)
+    }
+}
+
+/// Reads what is wanted; help and completions list the answers.
+#[derive(Clone, Copy)]
+pub struct WantedParser;
+
+impl TypedValueParser for WantedParser {
+    type Value = Wanted;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<Wanted, clap::Error> {
+        let text = clap::builder::StringValueParser::new().parse_ref(command, argument, value)?;
+        Ok(Wanted::parse(&text))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let value = |query: Query| PossibleValue::new(query.name()).help(query.title());
+        Some(Box::new(Query::EVERY.into_iter().map(value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_names() {
+        let wanted = |text: &str| {
+            let Wanted { query, groups } = Wanted::parse(text);
+            (query, groups.map(|groups| groups.join(" ")))
+        };
+        assert_eq!(wanted("field"), (Query::FIELD, None));
+        assert_eq!(wanted("gradient"), (Query::GRADIENT, None));
+        assert_eq!(wanted("all"), (Query::ALL, None));
+        assert_eq!(wanted("field,color"), (Query::ATTRIBUTES, Some("color".to_owned())));
+        assert_eq!(wanted("rough, gradient,wet"), (Query::ALL, Some("rough wet".to_owned())));
+        assert_eq!(wanted("attributes,color"), (Query::ATTRIBUTES, None));
+    }
+}
