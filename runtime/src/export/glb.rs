@@ -53,6 +53,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: Some("`_NAME`, 32-bit floats"),
     name: Some("node and mesh"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: None,
 };
 

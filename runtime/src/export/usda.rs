@@ -22,6 +22,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: Some("`primvars`, decimals"),
     name: Some("`displayName`"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: Some(LengthUnit::Metre),
 };
 

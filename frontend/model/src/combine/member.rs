@@ -213,6 +213,8 @@ pub enum OperatorReach {
 pub trait Step: Operator {
     /// What of it selects code.
     type Code: Copy + Eq + Hash + Debug;
+    /// Whether its surface has edges where the surfaces of the sides meet.
+    const CREASES: bool = true;
     /// Names of the numbers that a row keeps for it.
     const COLUMNS: &'static [&'static str] = &[];
 

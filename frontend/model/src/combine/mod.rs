@@ -180,9 +180,10 @@ macro_rules! operators {
 
         impl StepCode {
             /// See [`Step::COLUMNS`].
-            const fn columns(self) -> &'static [&'static str] {
-                match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ }
-            }
+            const fn columns(self) -> &'static [&'static str] { match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ } }
+
+            /// See [`Step::CREASES`].
+            pub const fn creases(self) -> bool { match self { $( Self::$step(_) => <$step as Step>::CREASES, )+ } }
 
             /// See [`Step::rule`].
             fn rule(self, non_negative: bool) -> Rule {

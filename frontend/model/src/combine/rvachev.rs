@@ -214,6 +214,9 @@ impl SetFormula for Rvachev {
         let relative = d.sub(one, ratio);
         let relative = positive_part(d, relative);
         let field = d.mul(iso, relative);
+        // The sides meet in an edge. Which of them is there is noted by a selection that changes nothing.
+        let left_is_larger = d.lt(b, a);
+        let field = d.select(left_is_larger, field, field);
         let right = match self.0 {
             SetOperation::Union | SetOperation::Intersection => b,
             SetOperation::Difference => {

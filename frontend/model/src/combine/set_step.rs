@@ -9,6 +9,9 @@ use super::member::{Operator, OperatorReach, PairResult, SideGrowth, Step, Takes
 
 /// The formula of a set operation in a family. It is what of the step selects code.
 pub trait SetFormula: Copy + Eq + Hash + Debug {
+    /// See [`Step::CREASES`].
+    const CREASES: bool = true;
+
     /// Pushes the numbers of a row.
     fn push_columns(self, number: f64, row: &mut Vec<f64>);
 
@@ -65,6 +68,7 @@ pub trait SetStep: Operator {
 impl<T: SetStep> Step for T {
     type Code = T::Formula;
     const COLUMNS: &'static [&'static str] = <T as SetStep>::COLUMNS;
+    const CREASES: bool = <T::Formula as SetFormula>::CREASES;
 
     fn code(self) -> T::Formula {
         self.formula()

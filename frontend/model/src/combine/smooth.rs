@@ -83,6 +83,8 @@ fn corner(is_union: bool, [a, b]: [f64; 2]) -> f64 {
 pub struct Smooth(pub(super) SetOperation);
 
 impl SetFormula for Smooth {
+    const CREASES: bool = false;
+
     fn push_columns(self, width: f64, row: &mut Vec<f64>) {
         row.extend([width, 0.25 / width]);
     }

@@ -38,7 +38,9 @@ use super::lattice::Lattice;
 use super::options::Options;
 use super::report::Sides;
 use super::scope::DivisionScope;
+use super::surface::SideCorner;
 use super::vertex::batch::VertexSource;
+use super::vertex::side::SharpVertex;
 use super::{sample, surface, vertex};
 use crate::job::Hook;
 use crate::progress::{EACH, Progress};
@@ -62,6 +64,10 @@ pub struct MeshBlock {
     pub mesh: Mesh,
     /// Vertices of other blocks that triangles have.
     pub below: Vec<VertexName>,
+    /// Corners of triangles that show sides of edges, ascending: three times the triangle plus the corner, and
+    /// the number of the side among those of its vertex. The [creases](Mesh::creases) of the block's mesh have
+    /// the sides of its vertices and no corners.
+    pub corners: Vec<[u32; 2]>,
     /// Vertices that triangles of other blocks may have: those of the last cells along some axis, ascending by
     /// their index.
     pub seams: Vec<(VertexName, u32)>,
@@ -137,6 +143,8 @@ pub(crate) fn extract<F: Field>(
         VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
     mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
+    let positions = &mesh.positions;
+    let corners = surface::crease(&bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =
@@ -145,7 +153,8 @@ pub(crate) fn extract<F: Field>(
     progress.finish()?;
     let mut cut_sides = crossings.cut;
     cut_sides.add(boxes.cut);
-    let mut made = cut_out(&bricks, &crossings, &mesh, range);
+    let mut made = cut_out(&bricks, &crossings, &mesh, range.clone());
+    crease(&mut made, &done.sharp, &corners, (vertices, 2 * crossings.quads[range.start]));
     (made.place, made.cut_sides, made.is_open) = (block.place(), cut_sides, crossings.is_open);
     made.seams = seams(&bricks, &crossings, own);
     Ok(made)
@@ -230,6 +239,23 @@ fn cut_out(bricks: &Bricks, crossings: &Crossings, mesh: &Mesh, range: std::ops:
         ..Mesh::default()
     };
     MeshBlock { mesh, below, ..MeshBlock::default() }
+}
+
+/// Gives a block the sides of its vertices, and the corners of its triangles that show some; `vertices` are
+/// its own, and it has so many triangles before it.
+fn crease(
+    made: &mut MeshBlock,
+    sharp: &[SharpVertex],
+    corners: &[SideCorner],
+    (vertices, triangles): (std::ops::Range<usize>, usize),
+) {
+    let widths: Vec<usize> = made.mesh.attributes.iter().map(|attribute| attribute.width).collect();
+    for one in sharp.iter().filter(|one| vertices.contains(&(one.vertex as usize))) {
+        made.mesh.creases.push(one.vertex - vertices.start as u32, one, &widths);
+    }
+    let own = 3 * triangles..3 * (triangles + made.mesh.triangles.len());
+    let of_block = corners.iter().filter(|of| own.contains(&(of.corner as usize)));
+    made.corners = of_block.map(|of| [of.corner - own.start as u32, of.side as u32]).collect();
 }
 
 /// The name of a vertex.
