@@ -1,4 +1,5 @@
-//! Numbers of the documents that are counts, sizes or outputs: what gives each of them stands beside it, and is asked.
+//! Numbers of the documents that are counts, sizes or outputs: what gives each of them stands beside it, and
+//! is asked.
 //!
 //! ```text
 //! <!-- claim "takes six" = "6.00": jbt count examples/hero.jbt -->     a command of the binary says 6.00

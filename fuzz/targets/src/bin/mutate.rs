@@ -1,5 +1,5 @@
-//! Fuzzing without coverage, on any Rust: `mutate FOLDER SECONDS [TARGET ..]` changes the seeds that `seeds FOLDER`
-//! wrote, at random, and runs each target for so long on each thread's share of the targets.
+//! Fuzzing without coverage, on any Rust: `mutate FOLDER SECONDS [TARGET ..]` changes the seeds that
+//! `seeds FOLDER` wrote, at random, and runs each target for so long.
 //!
 //! An input that fails, or that takes longer than ten seconds, is written to `FOLDER/../artifacts/<target>/`.
 //! `FOLDER/mutated.csv` gets a line for each target: its name, seconds, executions, failures, the seed.
