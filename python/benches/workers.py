@@ -116,8 +116,7 @@ def files(count: int = 20_000_000, cells: int = 512) -> None:
 
         def work() -> jbt.dask.Parts:
             paths = sorted((folder / "in").iterdir())
-            # Four times the mean distance: a fluid, and not as many balls.
-    radius = 0.04 * (1_000_000 / count) ** (1 / 3)
+            radius = 0.04 * (1_000_000 / count) ** (1 / 3)
             cloud = jbt.dask.files(paths, allow_files=folder / "in", radius=radius)
             return jbt.dask.mesh(cloud, resolution=cells, folder=folder / "out")
 
