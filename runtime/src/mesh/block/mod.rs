@@ -17,6 +17,7 @@
 //! | normals that triangles decide | one above |
 
 mod bytes;
+mod cells;
 mod chain;
 mod join;
 mod lattice_block;
@@ -28,8 +29,8 @@ use std::collections::BTreeMap;
 
 use jbt_ir::limits::MAX_BRICKS;
 
-use super::brick::{Bricks, place as number_place};
-use super::crossing::{self, CrossedCell, Crossings, UnflippedCells};
+use super::brick::Bricks;
+use super::crossing::{self, Crossings, UnflippedCells};
 use super::divide::{self, BrickDivision};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
@@ -44,6 +45,8 @@ use super::vertex::side::SharpVertex;
 use super::{sample, surface, vertex};
 use crate::job::Hook;
 use crate::progress::{EACH, Progress};
+
+use cells::{cell_of, is_in};
 
 /// A vertex by its cell in the whole lattice, and its place among the vertices of that cell.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -158,17 +161,6 @@ pub(crate) fn extract<F: Field>(
     (made.place, made.cut_sides, made.is_open) = (block.place(), cut_sides, crossings.is_open);
     made.seams = seams(&bricks, &crossings, own);
     Ok(made)
-}
-
-/// Whether a cell is in a box of cells.
-fn is_in(cell: [usize; 3], [low, end]: [[usize; 3]; 2]) -> bool {
-    (0..3).all(|axis| (low[axis]..end[axis]).contains(&cell[axis]))
-}
-
-/// Where a cell of a brick is in the lattice.
-fn cell_of(bricks: &Bricks, brick: usize, cell: &CrossedCell) -> [usize; 3] {
-    let (origin, place) = (bricks.origin(brick), number_place(cell.number));
-    [0, 1, 2].map(|axis| origin[axis] + place[axis])
 }
 
 /// The bricks of a block, which follow one another.
