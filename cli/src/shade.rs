@@ -41,7 +41,8 @@ impl Ramp {
             Self::Grey => &GREY,
         };
         // A NaN is at the low end.
-        let place = place.max(0.0).min(1.0) * (colors.len() - 1) as f32;
+        let inside = if place > 0.0 { place.min(1.0) } else { 0.0 };
+        let place = inside * (colors.len() - 1) as f32;
         let first = (place as usize).min(colors.len() - 2);
         let part = place - first as f32;
         [0, 1, 2].map(|channel| {
