@@ -7,13 +7,13 @@ use jbt_ir::limits::MAX_EXPANSION_DEPTH;
 
 use super::Value;
 use super::call::{CallFrame, Key, Remembered};
-use super::definition::Definition;
+use super::definition::ProgramDefinition;
 use super::repeat::Loop;
 use crate::block::{Begun, Frame, NodeStack};
 use crate::lex::{Place, Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Call;
+use jbt_model::label::LabelCall;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
 
@@ -21,7 +21,7 @@ use jbt_model::tree::Tree;
 pub(crate) enum BodyKind<'a> {
     /// A definition that is called; where to go on behind it, and what it is known by.
     Call {
-        definition: Rc<Definition<'a>>,
+        definition: Rc<ProgramDefinition<'a>>,
         back: Place<'a>,
         key: Option<Key>,
     },
@@ -41,7 +41,7 @@ pub(crate) struct BodyFrame<'a> {
     locals: usize,
     visible: usize,
     /// The calls and loops around it.
-    pub(super) around: Option<Arc<Call>>,
+    pub(super) around: Option<Arc<LabelCall>>,
     /// How many errors there were before it.
     pub(super) errors: usize,
 }
