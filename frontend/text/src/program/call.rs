@@ -52,7 +52,7 @@ pub(super) enum Next {
 }
 
 /// What an expansion is known by: the number of the definition, and its arguments as words.
-pub(super) type Key = (usize, Vec<u64>);
+pub(super) type CallKey = (usize, Vec<u64>);
 
 /// The nodes of an expansion.
 pub(super) struct Remembered(pub(super) Arc<[Tree]>);
@@ -223,7 +223,7 @@ impl<'a> Parser<'a> {
 }
 
 /// What an expansion is known by; nothing if its arguments are long.
-fn key(definition: usize, values: &[Value]) -> Option<Key> {
+fn key(definition: usize, values: &[Value]) -> Option<CallKey> {
     const LONGEST: usize = 256;
     let mut words = Vec::new();
     let mut stack: Vec<&Value> = values.iter().rev().collect();

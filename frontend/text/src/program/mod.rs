@@ -88,7 +88,7 @@ pub(super) struct Program<'a> {
     open: Vec<(String, String)>,
     definitions: HashMap<&'a str, Rc<ProgramDefinition<'a>>>,
     /// What has been expanded for which arguments.
-    remembered: HashMap<call::Key, Remembered>,
+    remembered: HashMap<call::CallKey, Remembered>,
     /// Values that have a name everywhere below.
     values: HashMap<&'a str, Value>,
     /// Arguments and variables, those of the innermost body last.
