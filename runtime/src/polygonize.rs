@@ -177,7 +177,7 @@ impl MeshCounters {
 
 impl Polygonized {
     /// The mesh as the first part of one.
-    fn as_part(mut self, name: &str) -> Self {
+    fn into_part(mut self, name: &str) -> Self {
         let made = std::mem::take(&mut self.mesh);
         self.mesh = Mesh { origin: made.origin, orientation: made.orientation, ..Mesh::default() };
         self.mesh.add_part(name, made, &self.lattice);
@@ -324,7 +324,7 @@ impl Polygonize {
             let made = self.mesh_over(&part_tree, lattice.clone(), &mut share)?;
             match &mut all {
                 Some(all) => all.add_part(part.name, made),
-                None => all = Some(made.as_part(part.name)),
+                None => all = Some(made.into_part(part.name)),
             }
         }
         match all {

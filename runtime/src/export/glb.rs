@@ -139,8 +139,8 @@ fn write_binary(
     Ok(())
 }
 
-/// The buffer views, one for every plane of numbers, and accessors, one for each of them and each piece, in the
-/// order of the bytes.
+/// The buffer views, one for every plane of numbers, and accessors, one for each of them and each piece, in
+/// the order of the bytes.
 #[derive(Default)]
 struct BufferLayout {
     accessors: Vec<Value>,

@@ -19,6 +19,7 @@ const MODEL: &[&[&str]] = &[
         "diagnostic",
         "eigen",
         "field",
+        "label",
         "orientation",
         "power",
         "query",
@@ -38,7 +39,7 @@ const MODEL: &[&[&str]] = &[
     &["kind"],
     &["written"],
     &["tree", "traverse"],
-    &["parameter"],
+    &["parameter", "path"],
     &["model"],
     // What it means.
     &["check"],
