@@ -1,5 +1,6 @@
-//! Kernels that follow the shape of a fluid: each point becomes an ellipsoid, flat where its neighbours lie in
-//! a plane (Yu and Turk 2013, "Reconstructing surfaces of particle-based fluids using anisotropic kernels").
+//! Kernels that follow the shape of a fluid: each point becomes an ellipsoid, flat where its neighbours lie
+//! in a plane (Yu and Turk 2013, "Reconstructing surfaces of particle-based fluids using anisotropic
+//! kernels").
 //!
 //! ```text
 //! neighbours   w_j = 1 - (d_j / R)^3 within R, of the points in the order of the file

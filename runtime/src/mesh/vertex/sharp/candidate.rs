@@ -4,7 +4,7 @@ use super::super::super::surface::unit;
 use super::super::sheet::{Sheet, Start};
 use super::super::side::SharpSide;
 use super::crossing::{Crossing, SHARP, dot};
-use super::quadric::{self, Aim};
+use super::quadric::{self, EdgeAim};
 use crate::boxes::Box3;
 
 /// A vertex that may be on an edge.
@@ -38,19 +38,19 @@ impl<'a> Candidate<'a> {
     }
 
     /// Where the planes of its crossings meet.
-    pub(super) fn aim(&self) -> Option<Aim> {
+    pub(super) fn aim(&self) -> Option<EdgeAim> {
         quadric::aim(&self.crossings, self.mean)
     }
 
     /// Where the planes of the two sides with the most crossings meet.
-    pub(super) fn edge(&self) -> Option<Aim> {
+    pub(super) fn edge(&self) -> Option<EdgeAim> {
         let mut sides: Vec<(usize, usize)> =
             (0..self.count).map(|side| (self.sides.iter().filter(|&&of| of == side).count(), side)).collect();
         sides.sort_by_key(|&(crossings, side)| (usize::MAX - crossings, side));
         let chosen: Vec<usize> = sides.iter().take(2).map(|&(_, side)| side).collect();
         let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
         let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
-        quadric::aim(&both, self.mean).filter(|aim| matches!(aim, Aim::Line(..)))
+        quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
     }
 
     /// The sides, with the means of what is at their crossings.

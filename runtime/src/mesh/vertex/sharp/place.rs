@@ -18,7 +18,7 @@ use super::super::bracket::BracketPoints;
 use super::super::margin::room;
 use super::candidate::{Candidate, clamped};
 use super::crossing::dot;
-use super::quadric::Aim;
+use super::quadric::EdgeAim;
 use crate::boxes::Box3;
 
 /// A vertex that would be in the cell beyond a face.
@@ -46,7 +46,7 @@ pub(super) fn place<F: Field>(
             one.position = clamped(point, bounds);
             continue;
         }
-        let edge = if let Aim::Point(_) = aim {
+        let edge = if let EdgeAim::Point(_) = aim {
             claims.extend(claim(source, brick, n, one, aim));
             one.edge().unwrap_or(aim)
         } else {
@@ -55,8 +55,8 @@ pub(super) fn place<F: Field>(
         let near = beside(&source.bricks.axes, one.sheet.cell);
         let reached = edge.within(bounds).map(|point| clamped(point, bounds));
         let beyond = || match edge {
-            Aim::Line(..) => edge.within(near).map(|point| clamped(point, near)),
-            Aim::Point(_) => None,
+            EdgeAim::Line(..) => edge.within(near).map(|point| clamped(point, near)),
+            EdgeAim::Point(_) => None,
         };
         one.is_beyond = reached.is_none() && beyond().is_some();
         one.position = reached.or_else(beyond).unwrap_or_else(|| clamped(edge.point(), bounds));
@@ -102,7 +102,7 @@ fn claim<F: Field>(
     brick: usize,
     candidate: usize,
     one: &Candidate<'_>,
-    aim: Aim,
+    aim: EdgeAim,
 ) -> Option<Claim> {
     let bricks = source.bricks;
     let (origin, place) = (bricks.origin(brick), place_of(one.sheet.number));
@@ -123,7 +123,7 @@ fn claim<F: Field>(
         let rooms = ends.map(room);
         let bounds = Box3::new(rooms.map(|room| room[0]), rooms.map(|room| room[1]));
         let Some(point) = aim.within(bounds) else { continue };
-        if matches!(aim, Aim::Point(_)) && !is_nearest(point, ends, face) {
+        if matches!(aim, EdgeAim::Point(_)) && !is_nearest(point, ends, face) {
             continue;
         }
         let way = [0, 1, 2].map(|axis| point[axis] - one.mean[axis]);

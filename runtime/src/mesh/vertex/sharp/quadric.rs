@@ -10,14 +10,14 @@ const LEAST: f64 = 0.01;
 
 /// What a vertex aims at.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Aim {
+pub(super) enum EdgeAim {
     /// A corner.
     Point([f64; 3]),
     /// A point of an edge, and the edge's direction.
     Line([f64; 3], [f64; 3]),
 }
 
-impl Aim {
+impl EdgeAim {
     /// The point of a box that is aimed at, if there is any.
     pub(super) fn within(self, Box3 { low, high }: Box3) -> Option<[f64; 3]> {
         let side = |axis: usize| [f64::from(low[axis]), f64::from(high[axis])];
@@ -55,7 +55,7 @@ impl Aim {
 
 /// Where the planes of the crossings meet: a point, or the line of an edge, nearest to `mean`. `None` if the
 /// planes are nearly one.
-pub(super) fn aim(crossings: &[Crossing], mean: [f64; 3]) -> Option<Aim> {
+pub(super) fn aim(crossings: &[Crossing], mean: [f64; 3]) -> Option<EdgeAim> {
     let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
     for crossing in crossings {
         let n = crossing.normal;
@@ -78,8 +78,8 @@ pub(super) fn aim(crossings: &[Crossing], mean: [f64; 3]) -> Option<Aim> {
     }
     let point = [0, 1, 2].map(|axis| mean[axis] + way[axis]);
     match counts.iter().filter(|&&counts| counts).count() {
-        3 => Some(Aim::Point(point)),
-        2 => Some(Aim::Line(point, vectors[counts.iter().position(|&counts| !counts)?])),
+        3 => Some(EdgeAim::Point(point)),
+        2 => Some(EdgeAim::Line(point, vectors[counts.iter().position(|&counts| !counts)?])),
         _ => None,
     }
 }
@@ -99,9 +99,9 @@ mod tests {
             crossing([0.75, 0.0, 0.25], [1.0, 0.0, 0.0]),
             crossing([0.1, 0.2, 0.625], [0.0, 0.0, 1.0]),
         ];
-        let Some(Aim::Point(point)) = aim(&faces, [0.3; 3]) else { panic!("a corner") };
+        let Some(EdgeAim::Point(point)) = aim(&faces, [0.3; 3]) else { panic!("a corner") };
         assert!(point.iter().zip([0.75, 0.5, 0.625]).all(|(a, b): (&f64, f64)| (a - b).abs() < 1e-12));
-        let Some(Aim::Line(point, way)) = aim(&faces[..2], [0.3; 3]) else { panic!("an edge") };
+        let Some(EdgeAim::Line(point, way)) = aim(&faces[..2], [0.3; 3]) else { panic!("an edge") };
         assert!(point.iter().zip([0.75, 0.5, 0.3]).all(|(a, b): (&f64, f64)| (a - b).abs() < 1e-12));
         assert!((way[2].abs() - 1.0).abs() < 1e-12);
         assert!(aim(&faces[..1], [0.3; 3]).is_none());
