@@ -6,6 +6,7 @@ mod output;
 mod render;
 mod scene;
 mod space;
+mod switch;
 mod tools;
 mod wanted;
 mod words;
@@ -17,6 +18,7 @@ pub use output::OutputArguments;
 pub use render::{GroundName, RenderArguments};
 pub use scene::{PartArguments, SceneArguments, SceneOptions};
 pub use space::LatticeArguments;
+pub use switch::Switch;
 pub use tools::{
     CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, DiffArguments, ManArguments,
     ShowArguments, StatsArguments,
@@ -26,14 +28,17 @@ use wanted::WantedParser;
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
+use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use jbt::export::{ColorEncoding, Format, LengthUnit, Up};
+use jbt::mesh::Simplify;
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
-use words::words;
+use crate::shade::Ramp;
+use words::{ValueRange, positive, range, simplify, words};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -136,7 +141,9 @@ Examples:
   jbt mesh hero.jbt -o hero.glb
   jbt mesh hero.jbt --resolution 200 -D radius=2 -o hero.ply
   jbt mesh hero.jbt --cell 0.05 --region -1,-1,-1,1,1,1 -o corner.stl --json
-  cat hero.jbt | jbt mesh - -o - --format obj | less")]
+  cat hero.jbt | jbt mesh - -o - --format obj | less
+  jbt mesh 'frame_{}.vtk' -o 'frame_{}.glb' --radius 0.02 --values heat --color-by heat --jobs 2
+                                    all frames of a sequence that have no newer result")]
 pub struct MeshArguments {
     /// What to mesh.
     #[command(flatten)]
@@ -150,12 +157,39 @@ pub struct MeshArguments {
     pub colors: Option<ColorEncoding>,
     #[arg(long, value_name = "UNIT", value_parser = words(LengthUnit::ALL, unit_in_words), help = unit_help())]
     pub unit: Option<LengthUnit>,
+    /// At most so many materials, each triangle of one, in a .3mf file: for printers
+    #[arg(long, value_name = "K")]
+    pub palette: Option<NonZeroU16>,
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
     /// Do not search for parts that are thinner than a cell
     #[arg(long)]
     pub no_thin: bool,
+    /// Whether vertices go to the edges and corners of the surface, and normals are split there; smooth
+    /// scenes have none
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub sharp: Switch,
+    /// Fewer triangles: 25% keeps a quarter of them, and a number lets the surface move by that, in units of
+    /// the scene; what is closed stays closed, attributes are kept
+    #[arg(long, value_name = "RATIO%|TOLERANCE", value_parser = simplify)]
+    pub simplify: Option<Simplify>,
+    /// Cut off what is lower than this above the lowest point, along the axis that points up: for printers
+    #[arg(long, value_name = "HEIGHT", value_parser = positive)]
+    pub flat_bottom: Option<f64>,
+    /// Colours by an attribute: its value, or its length if it has several reals, through --ramp
+    #[arg(long, value_name = "ATTRIBUTE")]
+    pub color_by: Option<String>,
+    /// The colours of --color-by, from the least value to the largest
+    #[arg(long, value_enum, default_value_t = Ramp::Viridis, requires = "color_by")]
+    pub ramp: Ramp,
+    /// The values that have the first and the last colour of --color-by [default: the least and the largest];
+    /// frames of a sequence look alike with it
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range, requires = "color_by", allow_hyphen_values = true)]
+    pub color_range: Option<ValueRange>,
+    /// Frames of a sequence that are made at once
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: u16,
     /// Look at every edge of the mesh to say that it is closed, and do not take it from how meshes are made
     #[arg(long)]
     pub verify: bool,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use jbt::diagnostic::escape;
-use jbt::text::{Difference, ModelHash, compare, hash};
+use jbt::text::{ModelDifference, ModelHash, compare, hash};
 use jbt::{CheckedTree, Compiler, Points, Query};
 use serde_json::{Value, json};
 
@@ -52,7 +52,7 @@ struct DifferingPlace {
 
 struct SceneDifferences {
     hashes: [ModelHash; 2],
-    items: Vec<Difference>,
+    items: Vec<ModelDifference>,
     place: Option<DifferingPlace>,
 }
 
@@ -93,9 +93,9 @@ fn differing(
             continue;
         }
         let place = found.get_or_insert(DifferingPlace { low: point, high: point, at: point, most: 0.0 });
-        for axis in 0..3 {
-            place.low[axis] = place.low[axis].min(point[axis]);
-            place.high[axis] = place.high[axis].max(point[axis]);
+        for (axis, x) in point.into_iter().enumerate() {
+            place.low[axis] = place.low[axis].min(x);
+            place.high[axis] = place.high[axis].max(x);
         }
         if apart > place.most {
             (place.at, place.most) = (point, apart);
@@ -112,7 +112,7 @@ impl SceneDifferences {
         }
         let mut out =
             format!("{a} and {b}: {}", plural(self.items.len() as u64, "difference", "differences"));
-        for Difference { path, first, second } in self.items.iter().take(SHOWN) {
+        for ModelDifference { path, first, second } in self.items.iter().take(SHOWN) {
             if !path.is_empty() {
                 let _ = write!(out, "\n  at {}", escape(path));
             }
@@ -133,7 +133,7 @@ impl SceneDifferences {
     }
 
     fn json(&self) -> Value {
-        let item = |Difference { path, first, second }: &Difference| json!({ "path": path, "first": first, "second": second });
+        let item = |ModelDifference { path, first, second }: &ModelDifference| json!({ "path": path, "first": first, "second": second });
         let place = self.place.as_ref().map(|place| {
             let corners = [place.low, place.high].concat();
             json!({ "box": corners, "at": place.at, "most": place.most })

@@ -33,6 +33,8 @@ mod progress;
 mod render;
 mod sample;
 mod scene;
+mod sequence;
+mod shade;
 mod show;
 mod signals;
 mod stages;

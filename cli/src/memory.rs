@@ -85,10 +85,7 @@ fn available() -> Option<u64> {
     let group = |limit: &str, used: &str| Some(number(limit)?.saturating_sub(number(used)?));
     let groups = [
         group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-        group(
-            "/sys/fs/cgroup/memory/memory.limit_in_bytes",
-            "/sys/fs/cgroup/memory/memory.usage_in_bytes",
-        ),
+        group("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
     ];
     groups.into_iter().flatten().chain(machine()).min()
 }

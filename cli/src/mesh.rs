@@ -5,25 +5,31 @@ use std::time::{Duration, Instant};
 use jbt::diagnostic::escape;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
 use jbt::mesh::ThinReport;
-use jbt::{Box3, MeshCounters, ModelOrigin, Polygonize, Polygonized};
+use jbt::{Box3, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized};
 use serde_json::json;
 
-use crate::arguments::MeshArguments;
+use crate::arguments::{MeshArguments, Switch};
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
+use crate::sequence;
+use crate::shade;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
+    if sequence::is_sequence(&arguments.scene.path) {
+        return sequence::run(arguments, quiet);
+    }
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
     let mut options = options(arguments, destination.kind)?;
     let settings = Polygonize {
         thin_parts: !arguments.no_thin,
         verify: arguments.verify,
+        sharp: arguments.sharp == Switch::On,
         ..lattice::settings(&arguments.lattice)?
     };
     let scene = LoadedScene::load(&arguments.scene)?;
@@ -34,8 +40,19 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
 
     let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || progress.run(settings.mesh(&compiler, &tree));
-    let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+    let mut made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+    if let Some(flat) = arguments.flat_bottom.and_then(|height| flattened(&scene.model, &made, height)) {
+        let tree = flat.check().map_err(|error| scene.failure(&error))?;
+        let mut work = || progress.run(settings.mesh(&compiler, &tree));
+        made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+    }
     drop(progress);
+    if let Some(name) = &arguments.color_by {
+        shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
+    }
+    if let Some(until) = arguments.simplify {
+        made.mesh = made.mesh.simplified(until);
+    }
 
     // The file is written while the mesh is measured.
     let mut output = Output::open(&destination)?;
@@ -73,7 +90,28 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
     if arguments.unit.is_some() && format.conventions().unit.is_none() {
         return Err(Failure::Usage(format!("a .{format} file states no unit that --unit could be about")));
     }
-    Ok(ExportOptions { up: arguments.up, colors: arguments.colors, unit: arguments.unit, name: None })
+    if arguments.palette.is_some() && !format.conventions().materials {
+        return Err(Failure::Usage(format!(
+            "a .{format} file has no materials that --palette could be about"
+        )));
+    }
+    let &MeshArguments { up, colors, unit, palette, .. } = arguments;
+    Ok(ExportOptions { up, colors, unit, palette, name: None })
+}
+
+/// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.
+fn flattened(model: &Model, made: &Polygonized, height: f64) -> Option<Model> {
+    let origin = ModelOrigin::new(made.mesh.origin);
+    let lowest = made.mesh.bounds()?.map(|corner| origin.world(corner.map(f64::from))).low;
+    let cell = made.lattice.spacing();
+    let Box3 { low, high } = lattice::bounds(&made.lattice, origin);
+    let (mut low, high) = (low.map(|c| c - cell), high.map(|c| c + cell));
+    let up = match model.orientation.up {
+        ModelUp::Y => 1,
+        ModelUp::Z => 2,
+    };
+    low[up] = lowest[up] + height;
+    Some(Model { root: model.root.within(low, high), ..model.clone() })
 }
 
 /// What may not be as people expect.
@@ -175,6 +213,7 @@ impl MeshSummary<'_> {
             "field_evaluations": report.field_evaluations + report.jump_evaluations,
             "jump_evaluations": report.jump_evaluations,
             "jump_vertices": report.jump_vertices,
+            "sharp_vertices": report.sharp_vertices,
             "gradient_evaluations": report.gradient_evaluations,
             "full_evaluations": report.full_evaluations,
             "primitive_evaluations": self.made.primitive_evaluations,

@@ -44,8 +44,8 @@ pub const MAX_INSTANCES: usize = 4_000_000;
 /// bytes while its model is meshed.
 pub const MAX_PARTICLES: usize = 1 << 27;
 /// Work that one point of a model is foreseen to take besides a leaf or an operator for each use of a node:
-/// pieces of curves by the numbers that each has, and operations of formulas, wherever they reach. A unit takes
-/// about two nanoseconds, so a mesh of a million points of which nothing can be left out takes minutes.
+/// pieces of curves by the numbers that each has, and operations of formulas, wherever they reach. A unit
+/// takes about two nanoseconds, so a mesh of a million points of which nothing can be left out takes minutes.
 pub const MAX_POINT_WORK: usize = 1 << 17;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;

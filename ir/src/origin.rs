@@ -17,13 +17,16 @@ pub enum Part {
     Distance,
     /// The falloff of the distance.
     Falloff,
+    /// Work whose decisions may bend the surface sharply: that of set operations, of mirrors, of formulas.
+    Crease,
     /// A derivative of any of these, added by the gradient pass.
     Gradient,
 }
 
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 5] = [Self::Shared, Self::Position, Self::Distance, Self::Falloff, Self::Gradient];
+    pub const ALL: [Self; 6] =
+        [Self::Shared, Self::Position, Self::Distance, Self::Falloff, Self::Crease, Self::Gradient];
 
     /// The name in the text form.
     #[must_use]
@@ -33,6 +36,7 @@ impl Part {
             Self::Position => "position",
             Self::Distance => "distance",
             Self::Falloff => "falloff",
+            Self::Crease => "crease",
             Self::Gradient => "gradient",
         }
     }
@@ -50,6 +54,9 @@ pub struct Origin {
 impl Origin {
     /// Work that belongs to no single leaf.
     pub const SHARED: Self = Self { slot: None, part: Part::Shared };
+
+    /// Work of several leaves that may bend the surface sharply.
+    pub const CREASE: Self = Self { slot: None, part: Part::Crease };
 
     /// Work for one leaf slot.
     #[must_use]

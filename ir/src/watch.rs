@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
-//! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is never
-//! stopped. A thread that waits for others while it is, waits [`under`] no watch, for it may do work for
+//! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is
+//! never stopped. A thread that waits for others while it is, waits [`under`] no watch: it may do work for
 //! somebody else meanwhile.
 
 use std::any::Any;
@@ -45,13 +45,13 @@ pub struct Stopped;
 
 /// Does work with a watch in a place. The one before comes back in the end.
 fn with<T>(place: &'static Place, watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
-    struct Before(&'static Place, Option<Watch>);
-    impl Drop for Before {
+    struct WatchBefore(&'static Place, Option<Watch>);
+    impl Drop for WatchBefore {
         fn drop(&mut self) {
             self.0.set(self.1.take());
         }
     }
-    let _before = Before(place, place.replace(watch));
+    let _before = WatchBefore(place, place.replace(watch));
     work()
 }
 
@@ -100,7 +100,11 @@ fn look_closely() {
 /// # Errors
 /// It was stopped. What it changed is as it was left, so it should own all that it changes.
 pub fn stoppable<T>(work: impl FnOnce() -> T) -> Result<T, Stopped> {
-    let watched = || under(OFFERED.with_borrow(Clone::clone), work);
+    let watch = OFFERED.with_borrow(Clone::clone);
+    if watch.as_ref().is_some_and(|watch| !watch()) {
+        return Err(Stopped);
+    }
+    let watched = || under(watch, work);
     catch_unwind(AssertUnwindSafe(watched)).map_err(|payload| match is_stop(&*payload) {
         true => Stopped,
         false => resume_unwind(payload),

@@ -441,7 +441,8 @@ fn single(op: Op, seed: u64) -> (Function, Tables) {
 
 #[test]
 fn every_op_is_enclosed() {
-    for &op in Op::ALL {
+    // The range of an end is the end, and encloses nothing.
+    for &op in Op::ALL.iter().filter(|&&op| op != Op::LowEnd) {
         let mut checked = Checked::default();
         let decides = matches!(op, Op::Min | Op::Max | Op::Lt | Op::Le | Op::Eq | Op::Select);
         for seed in 0..if decides { 600 } else { 150 } * effort() {

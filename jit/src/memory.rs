@@ -229,8 +229,8 @@ unsafe fn enter(
     stack: *mut u8,
 ) {
     let mut saved = 0_u32;
-    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it, and as `stack` is. r12 to
-    // r14 survive the call by its convention; r12 and r13 point at two words that live here, r14 keeps the
+    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it, and as `stack` is. r12
+    // to r14 survive the call by its convention; r12 and r13 point at two words that live here, r14 keeps the
     // stack pointer. Everything that the convention lets a callee change is named, and the environment, with
     // its exception flags, is what it was.
     unsafe {

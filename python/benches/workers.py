@@ -57,7 +57,7 @@ def on_workers(count: int, work: Callable[[], Any]) -> tuple[float, Any]:
 def table(name: str, whole: Callable[[], jbt.Mesh], parts: Callable[[], jbt.Mesh], only: int) -> None:
     seconds, mesh = timed(whole)
     wanted = digest(mesh)
-    print(f"{name}: {mesh}\n  in one process {seconds:.1f} s")
+    print(f"{name}: {mesh}\n  in one process {seconds:.1f} s", flush=True)
     first = 0.0
     for count in (only,) if only else (1, 2, 4):
         took, made = on_workers(count, parts)
@@ -85,7 +85,8 @@ def particles(count: int = 1_000_000, cells: int = 512, only: int = 0) -> None:
     from dask import array
 
     xyz = np.random.default_rng(1).uniform(-1, 1, (count, 3))
-    radius = 0.02 * (1_000_000 / count) ** (1 / 3)
+    # Four times the mean distance: a fluid, and not as many balls.
+    radius = 0.04 * (1_000_000 / count) ** (1 / 3)
 
     def parts() -> jbt.Mesh:
         places = array.from_array(xyz, chunks=(max(1, count // 8), 3))
@@ -115,7 +116,7 @@ def files(count: int = 20_000_000, cells: int = 512) -> None:
 
         def work() -> jbt.dask.Parts:
             paths = sorted((folder / "in").iterdir())
-            radius = 0.02 * (1_000_000 / count) ** (1 / 3)
+            radius = 0.04 * (1_000_000 / count) ** (1 / 3)
             cloud = jbt.dask.files(paths, allow_files=folder / "in", radius=radius)
             return jbt.dask.mesh(cloud, resolution=cells, folder=folder / "out")
 

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::str::FromStr as _;
 
 use jbt::export::{ColorEncoding, ExportError, ExportOptions, Format, Up, save_with};
-use jbt::mesh::{Attribute, Mesh};
+use jbt::mesh::{Attribute, Creases, Mesh};
 use jbt::{Box3, Engine, Fineness, Polygonize, Polygonized};
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray as _, PyReadonlyArray2};
+use numpy::{IntoPyArray as _, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -63,6 +63,7 @@ impl PyModel {
         cell: Option<f64>,
         bounds: Option<[[f64; 3]; 2]>,
         thin: bool,
+        sharp: bool,
         engine: Option<&str>,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
@@ -71,6 +72,7 @@ impl PyModel {
             region: region(bounds)?,
             fineness: fineness(resolution, cell)?,
             thin_parts: thin,
+            sharp,
             ..Polygonize::default()
         };
         let compiled = self.compiled(py, engine_of(engine)?)?;
@@ -89,10 +91,13 @@ pub(crate) fn mesh_dict(py: Python<'_>, mesh: Mesh) -> PyResult<Bound<'_, PyDict
     dict.set_item("normals", matrix(py, 3, mesh.normals.into_flattened())?)?;
     dict.set_item("faces", matrix(py, 3, mesh.triangles.into_flattened())?)?;
     let attributes = PyDict::new(py);
+    let names: Vec<(String, usize)> =
+        mesh.attributes.iter().map(|attribute| (attribute.name.clone(), attribute.width)).collect();
     for Attribute { name, width, values } in mesh.attributes {
         attributes.set_item(name, matrix(py, width, values)?)?;
     }
     dict.set_item("attributes", attributes)?;
+    dict.set_item("creases", creases_of(py, mesh.creases, &names)?)?;
     Ok(dict)
 }
 
@@ -119,6 +124,48 @@ fn told(py: Python<'_>, made: Polygonized) -> PyResult<Bound<'_, PyDict>> {
     Ok(dict)
 }
 
+/// The sides of edges, as arrays.
+fn creases_of<'py>(
+    py: Python<'py>,
+    creases: Creases,
+    attributes: &[(String, usize)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("vertices", creases.vertices.into_pyarray(py))?;
+    dict.set_item("normals", matrix(py, 3, creases.normals.into_flattened())?)?;
+    dict.set_item("corners", matrix(py, 2, creases.corners.into_flattened())?)?;
+    let values = PyDict::new(py);
+    let mut planes = creases.attributes.into_iter();
+    for (name, width) in attributes {
+        values.set_item(name, matrix(py, *width, planes.next().unwrap_or_default())?)?;
+    }
+    dict.set_item("attributes", values)?;
+    Ok(dict)
+}
+
+/// The sides of edges as arrays: vertices, normals, corners, values of each attribute.
+type CreaseArrays<'py> = (
+    PyReadonlyArray1<'py, u32>,
+    PyReadonlyArray2<'py, f32>,
+    PyReadonlyArray2<'py, u32>,
+    Vec<PyReadonlyArray2<'py, f32>>,
+);
+
+/// The sides of edges from arrays, copied.
+fn creases_from((vertices, normals, corners, attributes): &CreaseArrays<'_>) -> PyResult<Creases> {
+    let corners = corners.as_array();
+    if corners.ncols() != 2 {
+        return Err(refused(format!("corners: expected the shape (n, 2), got {:?}", corners.shape())));
+    }
+    let values = |values: &PyReadonlyArray2<'_, f32>| values.as_array().iter().copied().collect();
+    Ok(Creases {
+        vertices: vertices.as_array().to_vec(),
+        normals: triples("normals", normals)?,
+        attributes: attributes.iter().map(values).collect(),
+        corners: corners.outer_iter().map(|row| [row[0], row[1]]).collect(),
+    })
+}
+
 /// Rows of three numbers, copied.
 fn triples<T: numpy::Element + Copy>(name: &str, array: &PyReadonlyArray2<'_, T>) -> PyResult<Vec<[T; 3]>> {
     let view = array.as_array();
@@ -141,6 +188,7 @@ pub(crate) fn save_mesh(
     normals: PyReadonlyArray2<'_, f32>,
     faces: PyReadonlyArray2<'_, u32>,
     attributes: Vec<(String, PyReadonlyArray2<'_, f32>)>,
+    creases: CreaseArrays<'_>,
     format: Option<&str>,
     up: Option<&str>,
     colors: Option<&str>,
@@ -156,6 +204,8 @@ pub(crate) fn save_mesh(
         normals: triples("normals", &normals)?,
         attributes: attributes.collect(),
         triangles: triples("faces", &faces)?,
+        parts: Vec::new(),
+        creases: creases_from(&creases)?,
     };
     let word = |name: &str, given: &str, error: String| refused(format!("{name}: {given:?}: {error}"));
     let format = match format {

@@ -32,6 +32,25 @@ def test_a_ball_is_one() -> None:
     assert mesh.info["engine"] == "jit"
 
 
+def test_edges_are_sharp_and_split(tmp_path: Path) -> None:
+    cube = jbt.loads("jbt 1 color (1 0 0) { within (-0.83 -0.83 -0.83) to (0.83 0.83 0.83) { point { radius 9 } } }")
+    mesh, smooth = cube.mesh(cell=0.1), cube.mesh(cell=0.1, sharp=False)
+    assert mesh.closed
+    corners = np.linalg.norm(np.abs(mesh.vertices) - 0.83, axis=1) < 1e-3
+    assert corners.sum() == 8
+    assert not len(smooth.creases.corners)
+    assert mesh.volume == pytest.approx(1.66**3, rel=1e-3)
+    split = mesh.split()
+    assert len(split.vertices) == len(mesh.vertices) + len(mesh.creases.vertices)
+    normals = split.normals[split.faces]
+    assert (np.abs(normals).max(axis=2) > 0.999).all(), "each corner has the normal of its face"
+    assert (split.colors == np.array([1, 0, 0], np.float32)).all()
+    mesh.save(tmp_path / "a.ply")
+    assert b"element vertex %d" % len(split.vertices) in (tmp_path / "a.ply").read_bytes()
+    mesh.save(tmp_path / "a.obj")
+    assert sum(line.startswith("v ") for line in (tmp_path / "a.obj").open()) == len(mesh.vertices)
+
+
 def test_arrays_own_their_memory(peanut: jbt.Model) -> None:
     mesh = peanut.mesh(resolution=32)
     vertices, expected = mesh.vertices, mesh.vertices.copy()

@@ -14,7 +14,7 @@ mod task;
 
 use std::sync::{Arc, OnceLock};
 
-use jbt_ir::watch;
+use jbt_ir::{pass, watch};
 use jbt_lower::{Lowered, Lowering, Workers as _};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostic;
@@ -23,10 +23,11 @@ use jbt_model::query::Query;
 
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::CompileError;
-use crate::kernel::{Engine, Kernel, Purpose};
+use crate::error::{CompileError, EvalError};
+use crate::kernel::{BoundKernel, Engine, Kernel, Purpose};
 use crate::parallel::PoolWorkers;
 use crate::program::{AnswerProgram, ModelProgram};
+use crate::prune::Region;
 use crate::prune::program::RangeProgram;
 use crate::span::span;
 
@@ -68,6 +69,32 @@ struct CompiledParts {
     /// By [`Query::index`].
     in_regions: [ProgramSlot<AnswerProgram>; QUERIES],
     ranges: ProgramSlot<RangeProgram>,
+    decisions: ProgramSlot<DecisionProgram>,
+}
+
+/// A program that tells which operands decide about the field: field, gradient and signature.
+struct DecisionProgram(BoundKernel);
+
+impl ModelProgram for DecisionProgram {
+    fn kernel(&self) -> &Arc<Kernel> {
+        &self.0.kernel
+    }
+}
+
+/// What tells which operands decide about a model's field, in regions.
+#[derive(Clone)]
+pub(crate) struct Decisions(Arc<DecisionProgram>);
+
+impl Decisions {
+    /// Field, the three components of the gradient, and the signature at points of a region.
+    pub(crate) fn eval_region(
+        &self,
+        region: &Region,
+        points: [&[f32]; 3],
+        answers: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        self.0.0.run_with_finite_gradient(region.selection(), &points, answers).map(drop)
+    }
 }
 
 brief_debug!(Compiled, "Compiled", this: compiler = this.compiler());
@@ -176,6 +203,7 @@ impl Compiler {
             anywhere: Default::default(),
             in_regions: Default::default(),
             ranges: ProgramSlot::default(),
+            decisions: ProgramSlot::default(),
         }))
     }
 }
@@ -196,6 +224,7 @@ impl Compiled {
             anywhere: self.0.anywhere.each_ref().map(ProgramSlot::renewed),
             in_regions: self.0.in_regions.each_ref().map(ProgramSlot::renewed),
             ranges: self.0.ranges.renewed(),
+            decisions: self.0.decisions.renewed(),
         };
         self.0.hand_on(&parts);
         Self(Arc::new(parts))
@@ -251,6 +280,22 @@ impl Compiled {
         query: Query,
     ) -> Result<&Arc<AnswerProgram>, CompileError> {
         watch::stoppable(|| self.answers_of(scope, query, None))?
+    }
+
+    /// What tells which operands decide about the field; `None` if nothing in the model may bend its surface
+    /// sharply. It has the rows and the numbers of the field's program for regions.
+    pub(crate) fn decisions(&self) -> Result<Option<Decisions>, CompileError> {
+        let field = self.answers(PointScope::Regions, Query::FIELD)?;
+        let Some(function) = pass::decisions(&field.bound.kernel.lowered) else { return Ok(None) };
+        let program = self.0.decisions.get_or_make(|earlier| {
+            let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(Query::GRADIENT));
+            let kernel = compiler.kernel(function.clone(), purpose, earlier).or_else(|_| {
+                // It is several times as long as the field's, which the engine has taken.
+                compiler.clone().on_engine(Engine::Lanes).kernel(function, purpose, None)
+            })?;
+            Ok(Arc::new(DecisionProgram(compiler.bind(&kernel, Arc::clone(&field.bound.lowered)))))
+        })?;
+        Ok(Some(Decisions(Arc::clone(program))))
     }
 
     /// The program of ranges, and what is known about rows.

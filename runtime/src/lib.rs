@@ -70,7 +70,7 @@
 //! | `mint` | the same for mint 0.5, for any other library of vectors |
 //! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
 //!
-//! Without default features thirteen packages of others are built, with `jit` forty-three. glam's major
+//! Without default features fifteen packages of others are built, with `jit` forty-five. glam's major
 //! version is a matter of its feature alone: nothing else here has its types.
 //!
 //! # Targets

@@ -68,12 +68,16 @@ pub struct Polygonize {
     /// Whether to search for parts that are thinner than a cell: see [`mesh::ThinReport`]. It takes a few
     /// hundredths of the time as a rule, and changes nothing of the mesh.
     pub thin_parts: bool,
+    /// Whether vertices go to edges and corners of the surface: where something decides, as in a union, a
+    /// mirror or a formula's `max`. Normals and attributes are split there: see
+    /// [`Mesh::creases`](mesh::Mesh::creases). It changes nothing of a smooth model.
+    pub sharp: bool,
 }
 
 impl Default for Polygonize {
-    /// The model's support at the default fineness, not verified; thin parts are searched for.
+    /// The model's support at the default fineness, not verified; thin parts are searched for; sharp edges.
     fn default() -> Self {
-        Self { region: None, fineness: Fineness::default(), verify: false, thin_parts: true }
+        Self { region: None, fineness: Fineness::default(), verify: false, thin_parts: true, sharp: true }
     }
 }
 
@@ -173,7 +177,7 @@ impl MeshCounters {
 
 impl Polygonized {
     /// The mesh as the first part of one.
-    fn as_part(mut self, name: &str) -> Self {
+    fn into_part(mut self, name: &str) -> Self {
         let made = std::mem::take(&mut self.mesh);
         self.mesh = Mesh { origin: made.origin, orientation: made.orientation, ..Mesh::default() };
         self.mesh.add_part(name, made, &self.lattice);
@@ -303,6 +307,7 @@ impl Polygonize {
             iso: tree.iso() as f32,
             verify: self.verify,
             thin_parts: self.thin_parts,
+            sharp: self.sharp,
             ..mesh::Options::default()
         }
     }
@@ -319,7 +324,7 @@ impl Polygonize {
             let made = self.mesh_over(&part_tree, lattice.clone(), &mut share)?;
             match &mut all {
                 Some(all) => all.add_part(part.name, made),
-                None => all = Some(made.as_part(part.name)),
+                None => all = Some(made.into_part(part.name)),
             }
         }
         match all {
@@ -339,7 +344,7 @@ impl Polygonize {
             return Err(MeshError::Cancelled.into());
         }
         let start = Instant::now();
-        let kernels = Kernels::new(compiled)?;
+        let kernels = Kernels::new(compiled, self.sharp)?;
         let compile_time = start.elapsed();
         let options = self.options(tree);
         let mut counters = MeshCounters::default();
@@ -398,6 +403,35 @@ mod tests {
         assert!(made.mesh.triangles.is_empty() && made.report.closed);
         // A range tells that there is nothing: no point is asked.
         assert_eq!(made.primitive_evaluations, 0);
+    }
+
+    /// Vertices on edges are the same for bricks of any size, though they look into the cells around theirs.
+    #[test]
+    fn edges_have_the_same_bits_for_bricks_of_any_size() {
+        let tree = tree(
+            "jbt 1 rotate axis (1 2 3) degrees 31 { difference {
+                union {
+                    expression within (-2 -2 -2) to (2 2 2) { 0.5 + 0.8 - max(abs(x), abs(y), abs(z)) }
+                    color (1 0 0) { within (-0.4 -0.4 0) to (0.4 0.4 1.3) { point { radius 9 } } }
+                }
+                translate (0.9 0.2 0) { point { radius 1 } }
+            } }",
+        );
+        let settings = Polygonize { fineness: Fineness::Cell(0.07), ..Polygonize::default() };
+        let kernels = Kernels::new(&Compiler::for_engine(Engine::Lanes).compile(&tree), true).unwrap();
+        let lattice = settings.lattice(&tree).unwrap();
+        let made = |brick: usize| {
+            let options = mesh::Options { brick: Some(brick), ..settings.options(&tree) };
+            mesh::extract(&kernels, &lattice, &options).run().unwrap()
+        };
+        let (first, report) = made(2);
+        assert!(report.sharp_vertices > 500 && report.closed);
+        assert!(!first.creases.corners.is_empty());
+        for brick in [4, 8, 16, 32] {
+            let (mesh, again) = made(brick);
+            assert!(mesh == first, "{brick}");
+            assert_eq!(again.sharp_vertices, report.sharp_vertices);
+        }
     }
 
     /// A sphere of radius 1: every vertex lies on it, and the volume is near 4 pi / 3.

@@ -21,8 +21,13 @@ fn made(compiled: &Compiled) -> [u64; 2] {
     [kernels, bound]
 }
 
-const COARSE: Polygonize =
-    Polygonize { region: None, fineness: Fineness::Resolution(16), verify: false, thin_parts: true };
+const COARSE: Polygonize = Polygonize {
+    region: None,
+    fineness: Fineness::Resolution(16),
+    verify: false,
+    thin_parts: true,
+    sharp: true,
+};
 const DOWN: Ray = Ray { origin: [0.0, 0.0, 4.0], direction: [0.0, 0.0, -1.0], span: [0.0, 8.0] };
 
 /// A mesh, slices, rays, measures, a picture and samples of a model.

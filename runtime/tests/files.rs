@@ -3,7 +3,20 @@
 use jbt::export::{Conventions, Format, LengthUnit};
 
 fn row(conventions: &Conventions) -> String {
-    let &Conventions { extension, title, up, normals, colors, uv, attributes, name, far, unit } = conventions;
+    let &Conventions {
+        extension,
+        title,
+        up,
+        normals,
+        colors,
+        uv,
+        attributes,
+        name,
+        far,
+        unit,
+        splits: _,
+        materials: _,
+    } = conventions;
     let (place, encoding) = match colors {
         Some(colors) => (colors.place, colors.encoding.name()),
         None => ("none", ""),

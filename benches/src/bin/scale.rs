@@ -77,6 +77,7 @@ impl Row {
             fineness: Fineness::Resolution(self.cells),
             verify: false,
             thin_parts: false,
+            sharp: true,
         };
         let (mut best, mut spent, mut triangles) = (f64::INFINITY, 0.0, 0);
         for _ in 0..RUNS {

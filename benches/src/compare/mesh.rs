@@ -47,8 +47,13 @@ impl MeshTask {
 
     fn ours(&self, thin_parts: bool) -> Polygonized {
         let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
-        let polygonize =
-            Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false, thin_parts };
+        let polygonize = Polygonize {
+            region,
+            fineness: jbt::Fineness::Resolution(self.cells),
+            verify: false,
+            thin_parts,
+            sharp: true,
+        };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
         self.pool.install(run).expect("blobs have a mesh")
     }

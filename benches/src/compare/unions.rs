@@ -132,7 +132,7 @@ fn primitives() -> CheckedTree {
 fn ours(tree: &CheckedTree, options: Options) -> Polygonized {
     let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
     let fineness = Fineness::Resolution(1 << DEPTH);
-    let polygonize = Polygonize { region, fineness, verify: false, thin_parts: false };
+    let polygonize = Polygonize { region, fineness, verify: false, thin_parts: false, sharp: false };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads");
     pool.install(|| polygonize.mesh(&Compiler::new(), tree).run()).expect("the model has a mesh")
 }

@@ -7,6 +7,8 @@ use jbt::import::particles::{ParticleForm, ParticleOptions};
 use jbt::text::files::Files;
 use jbt::{SceneFormat, text};
 
+use super::words::positive;
+
 /// The scene, and what its text leaves open.
 #[derive(Args, Debug)]
 pub struct SceneArguments {
@@ -60,6 +62,10 @@ pub struct ParticleArguments {
     /// another hardness than 2
     #[arg(long, value_name = "soft|blinn[:H]", value_parser = form)]
     pub form: Option<ParticleForm>,
+    /// Make points ellipsoids by their neighbours within R, several times their distance: smooth fluids with
+    /// thin sheets, after Yu and Turk (2013)
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub anisotropic: Option<f64>,
     /// What the columns of a table are, in order: x, y, z, radius, strength, r, g, b, names of attributes, or
     /// `-` for one to leave out
     #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
@@ -78,21 +84,16 @@ pub struct ParticleArguments {
 impl SceneOptions {
     /// As the library takes them, with a way to open the files that a scene names.
     pub fn to_library(&self, files: Files) -> text::Options {
-        let ParticleArguments { radius, scale, form, columns, values, waters, frame } =
+        let ParticleArguments { radius, scale, form, anisotropic, columns, values, waters, frame } =
             self.particles.clone();
         let frame = frame.map(|frame| frame as usize);
         text::Options {
             parameters: self.definitions.clone(),
             object: self.object.clone(),
             files,
-            particles: ParticleOptions { radius, scale, form, columns, values, waters, frame },
+            particles: ParticleOptions { radius, scale, form, anisotropic, columns, values, waters, frame },
         }
     }
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a number above 0".to_owned()) }
 }
 
 fn form(text: &str) -> Result<ParticleForm, String> {

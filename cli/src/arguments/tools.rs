@@ -6,8 +6,8 @@ use clap::Args;
 use clap_complete::Shell;
 use jbt::{Query, SceneFormat};
 
-use super::scene::positive;
 use super::wanted::{Wanted, WantedParser};
+use super::words::positive;
 use super::words::queries;
 use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
 use crate::formats::TextKind;

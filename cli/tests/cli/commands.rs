@@ -34,6 +34,57 @@ fn mesh_writes_every_format_and_says_what_it_took() {
     assert_eq!(folder.read("a.glb"), folder.read("b.glb"));
 }
 
+#[test]
+fn meshes_of_printers_are_small_flat_and_of_few_materials() {
+    let folder = folder().with("ball.jbt", "jbt 1 color (1 0 0) { point { at (1 2 3) surface_radius 1 } }");
+    let made = |more: &[&str]| {
+        let start =
+            ["mesh", "ball.jbt", "-o", "a.3mf", "--force", "--resolution", "48", "--verify", "--json"];
+        let report = folder.jbt(&[&start[..], more].concat()).code(0).json();
+        assert_eq!(report["closed"], true, "{more:?}");
+        let number = |key: &str| report[key].as_f64().unwrap();
+        (number("triangles"), number("volume"), report["bounds"][2].as_f64().unwrap())
+    };
+    let (triangles, volume, low) = made(&[]);
+    let (fewer, smaller, _) = made(&["--simplify", "20%"]);
+    assert!(fewer <= 0.21 * triangles && (smaller / volume - 1.0).abs() < 0.02, "{fewer} of {triangles}");
+    let (few, smaller, _) = made(&["--simplify", "0.02"]);
+    assert!(few < 0.2 * triangles && (smaller / volume - 1.0).abs() < 0.04, "{few} of {triangles}");
+    let (_, cut, bottom) = made(&["--flat-bottom", "0.5"]);
+    assert!((bottom - (low + 0.5)).abs() < 1e-3, "{bottom} {low}");
+    // A cap of height 1/2 is missing.
+    let cap = std::f64::consts::PI * 0.25 * (3.0 - 0.5) / 3.0;
+    assert!((cut - (volume - cap)).abs() < 0.02, "{cut} {volume}");
+    let ran = folder.jbt(&["mesh", "ball.jbt", "-o", "a.glb", "--palette", "4"]).code(2);
+    assert!(ran.stderr().contains("--palette"), "{}", ran.stderr());
+    folder.jbt(&["mesh", "ball.jbt", "-o", "a.glb", "--simplify", "0%"]).code(2);
+}
+
+#[test]
+fn sequences_are_meshed_frame_by_frame_and_go_on() {
+    let mut folder = Folder::new();
+    for frame in 8..12 {
+        let text = format!("x,y,z,heat\n0,0,0,1\n0.5,0,{},3\n", f64::from(frame) / 20.0);
+        folder = folder.with(&format!("f_{frame}.csv"), text);
+    }
+    let folder = folder.with("f_12.csv", "x,y,z\n0,nan,0\n");
+    let start = ["mesh", "f_{}.csv", "-o", "out_{}.glb", "--radius", "0.4", "--resolution", "16"];
+    let colored = ["--values", "heat", "--color-by", "heat", "--ramp", "grey", "--jobs", "2"];
+    let ran = folder.jbt(&[&start[..], &colored].concat()).code(1);
+    assert!(ran.stderr().contains("f_12.csv"), "{}", ran.stderr());
+    for frame in 8..12 {
+        assert!(folder.read(&format!("out_{frame}.glb")).starts_with(b"glTF"));
+        assert!(ran.stdout().contains(&format!("out_{frame}.glb")), "{}", ran.stdout());
+    }
+    let again = folder.jbt(&[&start[..], &colored].concat()).code(1);
+    assert!(again.stderr().contains("4 frames are newer"), "{}", again.stderr());
+    assert_eq!(again.stdout(), "");
+    folder.jbt(&["mesh", "f_{}.csv", "-o", "out.glb", "--radius", "0.4"]).code(2);
+    folder.jbt(&["mesh", "g_{}.csv", "-o", "out_{}.glb", "--radius", "0.4"]).code(4);
+    let missing = folder.jbt(&["mesh", "f_8.csv", "-o", "o.glb", "--radius", "0.4", "--color-by", "cold"]);
+    assert!(missing.code(2).stderr().contains("cold"));
+}
+
 /// A ball: its size, its volume and its area are those of the mesh, a little below the exact ones; half of it
 /// encloses nothing.
 #[test]

@@ -236,7 +236,9 @@ fn pieces_times_uses_are_refused_at_once() {
     assert!(succulent.contains("(0.12 0.24 0.42 0.015)"));
     let huge = succulent.replace("(0.12 0.24 0.42 0.015)", "(0.12 4294967296 0.42 0.015)");
     let folder = folder().with("huge.jbt", huge);
-    for command in [vec!["check", "huge.jbt"], vec!["mesh", "huge.jbt", "--resolution", "32", "-o", "out.stl"]] {
+    for command in
+        [vec!["check", "huge.jbt"], vec!["mesh", "huge.jbt", "--resolution", "32", "-o", "out.stl"]]
+    {
         let start = std::time::Instant::now();
         folder.jbt(&command).code(3).says("huge.jbt:10:9: limit: unfolded, a point of the model would take");
         assert!(start.elapsed().as_secs() < 20, "{command:?} took {:?}", start.elapsed());

@@ -32,10 +32,14 @@ fn without_memory_there_is_code_3() {
             _ => panic!("{kilobytes} KB: {}, {told}", ran.status),
         }
         let left = fs::read_dir(folder.path(".")).unwrap();
-        let left = left.filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
+        let left =
+            left.filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
         assert_eq!(left.count(), 0, "{kilobytes} KB");
     }
-    assert!(seen.iter().all(|&seen| seen > 0), "limits at which it works, and at which it does not: {seen:?}");
+    assert!(
+        seen.iter().all(|&seen| seen > 0),
+        "limits at which it works, and at which it does not: {seen:?}"
+    );
 }
 
 /// A lattice that would take all the memory of the machine is bounded by what people allow.

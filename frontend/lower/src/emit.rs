@@ -31,7 +31,7 @@ mod select;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, Rule, Table, Value, limits};
+use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, Origin, Rule, Table, Value, limits};
 
 use self::parts::{Guard, GuardStart, Probes};
 use super::columns;
@@ -343,7 +343,9 @@ impl<'a> Emitter<'a> {
     fn map(&mut self, code: MapCode, row: &[Value]) {
         let child = self.answers.pop().expect("the child has been defined");
         let iso2 = self.iso2.expect("the scene's row is open");
+        let before = self.builder.set_origin(Origin::CREASE);
         let field = code.emit(&mut self.builder, child.field, row, iso2);
+        self.builder.set_origin(before);
         self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
     }
 
@@ -409,14 +411,18 @@ impl<'a> Emitter<'a> {
         let point = kind.emit(&mut self.builder, outer, &row);
         let code = self.scene.warp(inside.warp).code();
         let row = self.columns(place, columns::warp(&code));
-        match inside.weight {
+        let origin = if code.creases() { Origin::CREASE } else { self.builder.origin() };
+        let before = self.builder.set_origin(origin);
+        let inner = match inside.weight {
             None => code.emit(&mut self.builder, point, &row),
             Some(weight) => {
                 // It was computed where the space began in which the warp stands, at the point in that space.
                 let weight = self.kept[&weight].field;
                 code.emit_weighted(&mut self.builder, point, &row, weight)
             }
-        }
+        };
+        self.builder.set_origin(before);
+        inner
     }
 
     /// Enters a space at this point.

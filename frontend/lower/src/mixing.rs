@@ -18,7 +18,7 @@ mod group;
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain, FunctionBuilder, InstKind, Value};
+use jbt_ir::{Domain, FunctionBuilder, InstKind, Origin, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
@@ -223,6 +223,8 @@ impl State {
                 }
             }
             ReduceCode::Step(code) => {
+                let origin = if code.creases() { Origin::CREASE } else { d.origin() };
+                let before = d.set_origin(origin);
                 let pair = code.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
                 let sides = [self.field[0], operand.field];
                 self.field[0] = if operator.ranged {
@@ -230,6 +232,7 @@ impl State {
                 } else {
                     pair.field
                 };
+                d.set_origin(before);
                 let Some(known) = self.total else { return };
                 let (zero, one) = (d.constant(0.0), d.constant(1.0));
                 let is_known = d.lt(zero, known);
@@ -264,7 +267,9 @@ impl State {
     fn win(&mut self, d: &mut FunctionBuilder, extreme: Extreme, operand: &Answer, order: Option<Value>) {
         let best = self.field[0];
         if self.order.is_none() && self.groups.is_empty() {
+            let before = d.set_origin(Origin::CREASE);
             self.field[0] = extreme.step(d, best, operand.field);
+            d.set_origin(before);
             return;
         }
         let takes = takes(d, extreme, best, operand.field, self.order.zip(order));
@@ -428,7 +433,9 @@ pub(super) fn difference(
     iso2: Value,
     defaults: &[Vec<Value>],
 ) -> Answer {
+    let before = d.set_origin(Origin::CREASE);
     let (field, cuts) = jbt_model::combine::difference::emit(d, left.field, right.field, iso2);
+    d.set_origin(before);
     let one = d.constant(1.0);
     let groups = left.groups.iter().zip(&right.groups).zip(defaults).map(|((left, right), default)| {
         let decided: Vec<Value> =

@@ -18,8 +18,8 @@
 //! * The first attribute group is `color` with three reals, unless other groups alone were
 //!   [chosen](CheckedTree::of_attributes); names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
-//!   leaves, where a leaf counts once more for each piece of its skeleton. A point of the model is foreseen to
-//!   take at most [`limits::MAX_POINT_WORK`] of them and of what formulas take.
+//!   leaves, where a leaf counts once more for each piece of its skeleton. A point of the model is foreseen
+//!   to take at most [`limits::MAX_POINT_WORK`] of them and of what formulas take.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;

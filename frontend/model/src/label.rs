@@ -14,12 +14,12 @@ pub struct Label {
     /// Whether it is a part: a solid of its own, if it stands right below the root.
     pub part: bool,
     /// The calls and loops around it, if it is not written where the model has it.
-    pub calls: Option<Arc<Call>>,
+    pub calls: Option<Arc<LabelCall>>,
 }
 
 /// A place where a definition is used or a loop stands, and those around it.
 #[derive(PartialEq, Debug)]
-pub struct Call {
+pub struct LabelCall {
     /// What is called, or the variable of a loop.
     pub name: Arc<str>,
     /// In a loop: the number that the variable has, if it is one; nothing for calls.
@@ -39,7 +39,7 @@ pub enum CallTurn {
     Element(usize),
 }
 
-impl Call {
+impl LabelCall {
     /// How many notes a chain has at each of its ends.
     const SHOWN: usize = 4;
 

@@ -18,6 +18,7 @@ pub mod check;
 pub mod combine;
 mod descent;
 pub mod diagnostic;
+pub mod eigen;
 pub mod expression;
 pub mod falloff;
 pub mod field;

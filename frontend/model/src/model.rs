@@ -10,6 +10,8 @@ use crate::orientation::Orientation;
 use crate::parameter::{Parameter, collect};
 use crate::tree::{DEFAULT_ISO, Tree};
 
+mod select;
+
 /// A tree with the iso-value of its surface and its attribute groups. Inside means `field >= iso`.
 #[derive(Clone, Debug)]
 pub struct Model {

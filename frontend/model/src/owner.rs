@@ -136,6 +136,25 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
     Some(describe(tree, &found.steps, leaf, share))
 }
 
+impl CheckedTree {
+    /// The part that decides the field at a point of the world, in f64 by a plain walk: that of the
+    /// [`owner`](fn@owner). Where parts overlap it is the one with the larger field.
+    ///
+    /// ```
+    /// let text = r#"jbt 1 part "hub" { point { radius 1 } } part "rim" { point { at (3 0 0) radius 1 } }"#;
+    /// let tree = jbt_text::model(text)?.check()?;
+    /// assert_eq!([0.2, 3.1, 9.0].map(|x| tree.part_at([x, 0.0, 0.0])), [Some(0), Some(1), None]);
+    /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
+    /// ```
+    #[must_use]
+    pub fn part_at(&self, point: [f64; 3]) -> Option<usize> {
+        if self.parts().is_empty() {
+            return None;
+        }
+        Some(owner(self, point)?.above.first()?.1 as usize)
+    }
+}
+
 /// The question for the leaf that decides.
 struct Owners {
     iso: f64,

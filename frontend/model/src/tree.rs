@@ -23,9 +23,8 @@ use crate::traverse::Visit;
 use crate::word::normalized;
 use crate::written::Written;
 
-mod order;
+pub(crate) mod order;
 mod part;
-mod select;
 mod share;
 
 /// The iso-value of a model when nothing else is said.

@@ -45,7 +45,7 @@ impl BlockFrame {
 }
 
 /// What is open.
-pub(super) enum Frame<'a> {
+pub(super) enum NodeFrame<'a> {
     /// A block of children.
     Block(BlockFrame),
     /// The body of a definition, of a loop or of a condition.
@@ -59,7 +59,7 @@ pub(super) enum Frame<'a> {
 /// The stack of what is open, and that of finished subtrees.
 #[derive(Default)]
 pub(super) struct NodeStack<'a> {
-    pub(super) frames: Vec<Frame<'a>>,
+    pub(super) frames: Vec<NodeFrame<'a>>,
     pub(super) finished: Vec<Tree>,
     /// How many of the frames are bodies.
     pub(super) bodies: usize,

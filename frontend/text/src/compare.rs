@@ -14,14 +14,14 @@ use jbt_model::tree::Tree;
 use jbt_model::written::Written;
 
 use crate::hash::{ModelHash, hashes};
-use crate::print::{node_words, statements};
+use crate::item::{node_words, statements};
 
 /// The most items of a comparison.
 pub const MAX_DIFFERENCES: usize = 10_000;
 
 /// A difference between two models. Words are those of a printed text, without what stands in blocks.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Difference {
+pub struct ModelDifference {
     /// The way from the root: names, or words of kinds, with the numbers of children; empty for statements.
     pub path: String,
     /// How the first model has it; nothing if it is in the second alone.
@@ -44,15 +44,18 @@ pub struct Difference {
 /// assert_eq!(found[0].second.as_deref(), Some("point { radius 2 }"));
 /// ```
 #[must_use]
-pub fn compare(first: &Model, second: &Model) -> Vec<Difference> {
+pub fn compare(first: &Model, second: &Model) -> Vec<ModelDifference> {
     let mut found = Vec::new();
     let [a, b] = [statements(first), statements(second)];
     let only = |of: &[String], others: &[String]| -> Vec<String> {
         let others: HashSet<&String> = others.iter().collect();
         of.iter().filter(|one| !others.contains(one)).cloned().collect()
     };
-    let statement =
-        |first: Option<String>, second: Option<String>| Difference { path: String::new(), first, second };
+    let statement = |first: Option<String>, second: Option<String>| ModelDifference {
+        path: String::new(),
+        first,
+        second,
+    };
     found.extend(only(&a, &b).into_iter().map(|one| statement(Some(one), None)));
     found.extend(only(&b, &a).into_iter().map(|one| statement(None, Some(one))));
     let search = Search { hashes: [hashes(&first.root), hashes(&second.root)], seen: HashSet::new() };
@@ -67,7 +70,7 @@ struct Search {
 }
 
 impl Search {
-    fn run(mut self, first: &Tree, second: &Tree, found: &mut Vec<Difference>) {
+    fn run(mut self, first: &Tree, second: &Tree, found: &mut Vec<ModelDifference>) {
         let mut stack = vec![(Some(first), Some(second), word(first))];
         while let Some((a, b, path)) = stack.pop() {
             if found.len() >= MAX_DIFFERENCES {
@@ -75,7 +78,7 @@ impl Search {
             }
             let (Some(a), Some(b)) = (a, b) else {
                 let (first, second) = (a.map(node_words), b.map(node_words));
-                found.push(Difference { path, first, second });
+                found.push(ModelDifference { path, first, second });
                 continue;
             };
             let equal = self.hashes[0][&a.identity()] == self.hashes[1][&b.identity()];
@@ -84,7 +87,7 @@ impl Search {
             }
             let (words, others) = (node_words(a), node_words(b));
             if words != others {
-                found.push(Difference { path: path.clone(), first: Some(words), second: Some(others) });
+                found.push(ModelDifference { path: path.clone(), first: Some(words), second: Some(others) });
             }
             let pairs = self.pairs(a.node().children(), b.node().children());
             for (place, (a, b)) in pairs.into_iter().enumerate().rev() {

@@ -16,7 +16,7 @@ use jbt_model::model::Model;
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
 
-use crate::print::{node_words, statements};
+use crate::item::{node_words, statements};
 
 /// The hash of a model, or of a part of one: see [`hash`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
 use super::expression::ExpressionPlace;
-use super::lex::{RANGE, Token, TokenKind};
+use super::lex::{Token, TokenKind};
 use super::part::PART;
 use super::program::Value;
 use super::state::{Options, Parser};
@@ -16,7 +16,7 @@ use jbt_model::diagnostic::{Diagnostic, Span, escape};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, NumberFormula};
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
-use jbt_model::parameter::{Fixture, Parameter, ParameterRange, not_finite, unknown};
+use jbt_model::parameter::{Fixture, not_finite, unknown};
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
 use jbt_model::word::{is_statement, normalized};
@@ -276,29 +276,6 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn param_statement(&mut self) {
-        let Some((name, span)) = self.name("parameter") else {
-            return;
-        };
-        self.equals();
-        let lost = self.is_muted();
-        let default = if lost { f64::NAN.into() } else { self.expression(ExpressionPlace::Alone).number };
-        if is_builtin(name) {
-            self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
-        } else if self.references.contains_key(name) {
-            self.report(|| Diagnostic::error(Some(span), format!("a second parameter `{}`", clip(name))));
-        } else if self.program.value(name).is_some() {
-            self.report(|| Diagnostic::error(Some(span), format!("a second `{}`", clip(name))));
-        } else {
-            let set = self.options.parameters.iter().rev().find(|(set, _)| normalized(set) == name);
-            let setting = set.map(|&(_, value)| value);
-            let parameter = Parameter::declared(name, default, setting, span);
-            let parameter = if lost { parameter } else { self.control(parameter) };
-            self.references.insert(name, parameter.reference());
-            self.parameters.push(parameter);
-        }
-    }
-
     fn attribute_statement(&mut self) {
         let Some((name, span)) = self.name("attribute") else {
             return;
@@ -417,40 +394,6 @@ impl<'a> Parser<'a> {
         } else if self.program.define(name, value.unwrap_or_else(Value::unknown)) {
             self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
         }
-    }
-
-    /// What may stand behind the default of a parameter: `in LOW .. HIGH step STEP "Label"`.
-    fn control(&mut self, mut parameter: Parameter) -> Parameter {
-        if self.peek_word() == Some("in") {
-            let start = self.next().start;
-            let number = |parser: &mut Self| {
-                let operand = parser.expression(ExpressionPlace::Alone);
-                parser.declares(Fixture::Declaration, &operand.number, operand.span);
-                operand.number.value()
-            };
-            let low = number(self);
-            if self.accept(RANGE).is_none() {
-                self.expected_at(self.peek(), "expected `..` and the largest value");
-                return parameter;
-            }
-            let high = number(self);
-            let step = self.accept_word("step").then(|| number(self));
-            let range = ParameterRange { low, high, step };
-            let span = Span::new(start, self.previous_end());
-            match range.fault().filter(|_| !(low.is_nan() || high.is_nan())) {
-                Some(fault) => {
-                    self.report(|| {
-                        Diagnostic::error(Some(span), "this range makes no sense").expected(fault)
-                    });
-                }
-                None => parameter = parameter.within(range),
-            }
-        }
-        if self.peek().kind == TokenKind::Quoted {
-            let token = self.next();
-            parameter = parameter.labelled(self.text(token).trim_matches('"'));
-        }
-        parameter
     }
 
     fn root(&mut self, token: Token) {

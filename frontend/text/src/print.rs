@@ -88,29 +88,6 @@ pub fn print(model: &Model) -> String {
     out
 }
 
-/// The statements in front of the root, each as it is printed: those that say what the tree means, without
-/// comments.
-pub(super) fn statements(model: &Model) -> Vec<String> {
-    let plain = Model { comments: jbt_model::model::Comments::new(), root: Tree::empty(), ..model.clone() };
-    let mut parameters: Vec<String> = Vec::new();
-    for parameter in model.all_parameters() {
-        let mut line = String::new();
-        print_parameter(&mut line, &parameter);
-        parameters.push(line.trim_end().to_owned());
-    }
-    let rest = print(&plain);
-    let rest =
-        rest.lines().skip(1).filter(|line| !line.is_empty() && !line.starts_with("param ") && *line != EMPTY);
-    parameters.into_iter().chain(rest.map(str::to_owned)).collect()
-}
-
-/// The words and numbers of a node, without its block.
-pub(super) fn node_words(tree: &Tree) -> String {
-    let mut out = String::new();
-    head(&mut out, tree.node().written(), "t");
-    out
-}
-
 /// The comment in front of a statement.
 fn comment(out: &mut String, model: &Model, statement: &str) {
     let lines = model.comments.get(statement).into_iter().flat_map(|text| text.lines());
@@ -122,7 +99,7 @@ fn comment(out: &mut String, model: &Model, statement: &str) {
     }
 }
 
-fn print_parameter(out: &mut String, parameter: &Parameter) {
+pub(super) fn print_parameter(out: &mut String, parameter: &Parameter) {
     let _ = write!(out, "param {} = {}", parameter.name(), parameter.source());
     if let Some(ParameterRange { low, high, step }) = parameter.range() {
         let _ = write!(out, " in {} .. {}", Number::from(low), Number::from(high));
@@ -337,7 +314,7 @@ fn operator(out: &mut String, kind: CombinatorKind, fields: &[FieldNumber]) {
 
 /// What stands before a node's block; of a primitive, all of it. Names of definitions begin with
 /// `definitions`.
-fn head(out: &mut String, written: &Written, definitions: &str) {
+pub(super) fn head(out: &mut String, written: &Written, definitions: &str) {
     match written {
         Written::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
             let _ = write!(out, "{} {{", kind.name());

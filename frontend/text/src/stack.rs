@@ -1,7 +1,7 @@
 //! The stack of open blocks, bodies, calls and names, and that of finished subtrees: how nodes are read
 //! without recursion.
 
-use super::block::{Begun, BlockFrame, Frame, NodeStack};
+use super::block::{Begun, BlockFrame, NodeFrame, NodeStack};
 use super::lex::TokenKind;
 use super::state::Parser;
 use jbt_model::diagnostic::Diagnostic;
@@ -44,7 +44,7 @@ impl<'a> Parser<'a> {
     fn step(&mut self, stack: &mut NodeStack<'a>) -> bool {
         let token = self.peek();
         let word = self.peek_word();
-        let in_body = matches!(stack.frames.last(), Some(Frame::Body(_)));
+        let in_body = matches!(stack.frames.last(), Some(NodeFrame::Body(_)));
         match token.kind {
             TokenKind::Word if in_body && word == Some("let") => {
                 self.report_again();
@@ -56,7 +56,7 @@ impl<'a> Parser<'a> {
                 self.push(begun, stack);
             }
             TokenKind::Mark(b'}')
-                if matches!(stack.frames.last(), Some(Frame::Block(_) | Frame::Body(_))) =>
+                if matches!(stack.frames.last(), Some(NodeFrame::Block(_) | NodeFrame::Body(_))) =>
             {
                 self.report_again();
                 self.next();
@@ -71,9 +71,9 @@ impl<'a> Parser<'a> {
             }
             TokenKind::Word | TokenKind::End => {
                 match stack.frames.last() {
-                    Some(Frame::Block(frame)) => self.unclosed(frame.open, token),
-                    Some(Frame::Body(frame)) => self.unclosed(frame.open, token),
-                    Some(Frame::Call(_) | Frame::Local(_)) | None => {
+                    Some(NodeFrame::Block(frame)) => self.unclosed(frame.open, token),
+                    Some(NodeFrame::Body(frame)) => self.unclosed(frame.open, token),
+                    Some(NodeFrame::Call(_) | NodeFrame::Local(_)) | None => {
                         self.expected_at(token, "expected a node");
                     }
                 }
@@ -81,9 +81,9 @@ impl<'a> Parser<'a> {
             }
             TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                 match stack.frames.last_mut() {
-                    Some(Frame::Block(frame)) => frame.incomplete = true,
-                    Some(Frame::Body(_)) => {}
-                    Some(Frame::Call(_) | Frame::Local(_)) => {
+                    Some(NodeFrame::Block(frame)) => frame.incomplete = true,
+                    Some(NodeFrame::Body(_)) => {}
+                    Some(NodeFrame::Call(_) | NodeFrame::Local(_)) => {
                         self.expected_at(token, "expected a node");
                         stack.finished.push(self.broken.clone());
                         self.settle(stack);
@@ -113,12 +113,14 @@ impl<'a> Parser<'a> {
                 self.settle(stack);
             }
             Begun::Block(frame) => {
-                stack.frames.push(Frame::Block(BlockFrame { first: stack.finished.len() as u32, ..frame }));
+                stack
+                    .frames
+                    .push(NodeFrame::Block(BlockFrame { first: stack.finished.len() as u32, ..frame }));
             }
             Begun::Body(mut frame) => {
                 frame.first = stack.finished.len();
                 stack.bodies += 1;
-                stack.frames.push(Frame::Body(frame));
+                stack.frames.push(NodeFrame::Body(frame));
             }
             Begun::Call(frame) => {
                 if self.advance(frame, stack) {
@@ -127,7 +129,7 @@ impl<'a> Parser<'a> {
             }
             Begun::Named(mut frame) => {
                 frame.first = stack.finished.len();
-                stack.frames.push(Frame::Local(frame));
+                stack.frames.push(NodeFrame::Local(frame));
             }
             Begun::Done => self.settle(stack),
             Begun::Nothing => {}
@@ -137,20 +139,20 @@ impl<'a> Parser<'a> {
     /// Ends the block or the body on top, whose brace has just been taken.
     fn pop(&mut self, stack: &mut NodeStack<'a>) {
         match stack.frames.pop() {
-            Some(Frame::Block(frame)) => {
+            Some(NodeFrame::Block(frame)) => {
                 let children = stack.finished.drain(frame.first as usize..).collect();
                 let tree = self.close(frame, children);
                 stack.finished.push(tree);
                 self.settle(stack);
             }
-            Some(Frame::Body(frame)) => match self.close_body(frame, &stack.finished) {
-                Some(frame) => stack.frames.push(Frame::Body(frame)),
+            Some(NodeFrame::Body(frame)) => match self.close_body(frame, &stack.finished) {
+                Some(frame) => stack.frames.push(NodeFrame::Body(frame)),
                 None => {
                     stack.bodies -= 1;
                     self.settle(stack);
                 }
             },
-            Some(Frame::Call(_) | Frame::Local(_)) | None => {}
+            Some(NodeFrame::Call(_) | NodeFrame::Local(_)) | None => {}
         }
     }
 

@@ -24,6 +24,7 @@ pub(crate) fn run(bytes: &[u8]) {
         fineness: Fineness::Resolution(1 + rng.usize(0..MAX_RESOLUTION)),
         verify: true,
         thin_parts: rng.bool(),
+        sharp: true,
     };
     let Some(made) = mesh(&polygonize, Engine::Jit, &tree) else { return };
     let (vertices, triangles) = (made.mesh.positions.len(), &made.mesh.triangles);

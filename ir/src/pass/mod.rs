@@ -8,7 +8,7 @@
 //! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! `gradient`, `guarded-gradient` and `interval` change what is computed. So they are not in the list: the
+//! `decisions`, `gradient`, `guarded-gradient` and `interval` change what is computed. So they are not in the list: the
 //! caller puts one of them in front, by what the program is for: `run_pipeline(f,
 //! [&GRADIENT].into_iter().chain(PIPELINE), ..)`. They need the transcendentals whole, hence before
 //! `legalize`. Straight code is made behind them.
@@ -16,6 +16,7 @@
 //! `idle` and `liveness` are no passes: they look at a function, for engines.
 
 mod dce;
+mod decisions;
 mod fold_constants;
 mod gradient;
 mod idle;
@@ -26,6 +27,7 @@ mod schedule;
 mod simplify;
 
 pub use dce::dce;
+pub use decisions::{SIGNATURE_OUTPUT, decisions};
 pub use fold_constants::fold_constants;
 pub use gradient::{GRADIENT_OUTPUTS, gradient, guarded_gradient};
 pub use idle::{Gate, Gates, gates};

@@ -23,7 +23,7 @@ from ._grid import Grid
 from ._hits import Hits, Owners
 from ._jbt import Falloff, Number, Pattern, Term
 from ._members import *  # noqa: F403
-from ._mesh import Mesh
+from ._mesh import Creases, Mesh
 from ._model import (
     Group,
     Measures,
@@ -50,6 +50,7 @@ __all__ = [
     "Comparison",
     "Contours",
     "Counters",
+    "Creases",
     "Diagnostic",
     "Evaluator",
     "Falloff",

@@ -14,6 +14,24 @@ from ._types import Doubles, Floats, Path
 
 
 @dataclass(eq=False, repr=False)
+class Creases:
+    """Corners of triangles whose normals and attributes are not those of their vertex, because an edge of
+    the surface is there. Each shows a *side* of a vertex.
+
+    Attributes:
+        vertices: uint32, (k,): the vertex of each side.
+        normals: float32, (k, 3): the normal of each side.
+        corners: uint32, (m, 2): three times the face plus the corner, and the side that it shows.
+        attributes: float32, (k, width) for each attribute of the mesh.
+    """
+
+    vertices: NDArray[np.uint32] = field(default_factory=lambda: np.zeros(0, np.uint32))
+    normals: Floats = field(default_factory=lambda: np.zeros((0, 3), np.float32))
+    corners: NDArray[np.uint32] = field(default_factory=lambda: np.zeros((0, 2), np.uint32))
+    attributes: dict[str, Floats] = field(default_factory=dict)
+
+
+@dataclass(eq=False, repr=False)
 class Mesh:
     """Triangles with normals and attributes. The arrays own their memory and may be changed.
 
@@ -22,6 +40,7 @@ class Mesh:
         faces: uint32, (m, 3): three vertices each, counter-clockwise from outside, in right-handed axes.
         normals: float32, (n, 3), of length 1, outwards.
         attributes: float32, (n, width) for each group of the model: `color`, ...
+        creases: where corners of faces have other normals and attributes: see `split`.
         origin: where positions count from, in the world: 0 unless the model is far away.
         up: the axis that points up, "z" or "y", as the model has it.
         handed: the hand of the axes, "right" or "left", as the model has it.
@@ -35,6 +54,7 @@ class Mesh:
     faces: NDArray[np.uint32]
     normals: Floats
     attributes: dict[str, Floats] = field(default_factory=dict)
+    creases: Creases = field(default_factory=Creases)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     up: str = "z"
     handed: str = "right"
@@ -42,6 +62,26 @@ class Mesh:
     cut_sides: str = "none"
     spacing: float = 0.0
     info: dict[str, Any] = field(default_factory=dict)
+
+    def split(self) -> Mesh:
+        """The mesh with a vertex for each side of its creases, behind the others, for programs whose
+        vertices have one normal each. It is closed by its positions alone."""
+        sides = self.creases
+        if not len(sides.corners):
+            return self
+        faces = self.faces.copy()
+        faces.reshape(-1)[sides.corners[:, 0]] = np.uint32(len(self.vertices)) + sides.corners[:, 1]
+        return replace(
+            self,
+            vertices=np.concatenate([self.vertices, self.vertices[sides.vertices]]),
+            normals=np.concatenate([self.normals, sides.normals]),
+            attributes={
+                name: np.concatenate([values, sides.attributes[name]])
+                for name, values in self.attributes.items()
+            },
+            faces=faces,
+            creases=Creases(),
+        )
 
     @property
     def colors(self) -> Floats:
@@ -71,9 +111,18 @@ class Mesh:
             vertices=self.vertices * turn + np.float32(0),
             normals=self.normals * turn + np.float32(0),
             faces=np.ascontiguousarray(self.faces[:, [0, 2, 1]]),
+            creases=self._mirrored(turn),
             origin=(x, y, z),
             handed="right",
         )
+
+    def _mirrored(self, turn: Floats) -> Creases:
+        """The creases of a mesh whose faces are turned around."""
+        sides = self.creases
+        corners = sides.corners.copy()
+        corners[:, 0] = corners[:, 0] // 3 * 3 + np.array([0, 2, 1], np.uint32)[corners[:, 0] % 3]
+        corners = corners[np.argsort(corners[:, 0], kind="stable")]
+        return replace(sides, normals=sides.normals * turn + np.float32(0), corners=corners)
 
     @property
     def bounds(self) -> Doubles:
@@ -160,6 +209,14 @@ class Mesh:
         ]
         vertices, normals = (np.ascontiguousarray(a, np.float32) for a in (self.vertices, self.normals))
         faces = np.ascontiguousarray(self.faces, np.uint32)
+        sides = self.creases
+        kept = bool(len(sides.corners))
+        creases = (
+            np.ascontiguousarray(sides.vertices, np.uint32),
+            np.ascontiguousarray(sides.normals, np.float32),
+            np.ascontiguousarray(sides.corners, np.uint32),
+            [np.ascontiguousarray(sides.attributes[name], np.float32) for name in self.attributes if kept],
+        )
         _jbt.save_mesh(
             fspath(path),
             list(self.origin),
@@ -168,6 +225,7 @@ class Mesh:
             normals,
             faces,
             attributes,
+            creases,
             format,
             up,
             colors,
@@ -190,4 +248,5 @@ def of_native(made: dict[str, Any]) -> Mesh:
     arrays = {name: made.pop(name) for name in ("vertices", "faces", "normals", "attributes")}
     facts = {name: made.pop(name) for name in ("up", "handed", "closed", "cut_sides", "spacing")}
     x, y, z = made.pop("origin")
-    return Mesh(**arrays, origin=(x, y, z), **facts, info=made)
+    creases = Creases(**made.pop("creases"))
+    return Mesh(**arrays, creases=creases, origin=(x, y, z), **facts, info=made)

@@ -364,6 +364,7 @@ class Model(ModelMembers):
         cell: float | None = None,
         region: Region | None = None,
         thin: bool = True,
+        sharp: bool = True,
         engine: Engine | None = None,
         threads: int | None = None,
         progress: Progress = None,
@@ -376,6 +377,8 @@ class Model(ModelMembers):
             region: a box, as two corners. As a rule the model's support; a model without end needs one.
                 Where it cuts the solid, the mesh is open, and `OpenMeshWarning` says so.
             thin: whether to search for parts thinner than a cell: `info` says what was found.
+            sharp: whether vertices go to edges and corners of the surface, as of a union or a formula's
+                `max`: see `Mesh.creases`. Smooth models have none.
             engine: see `compile`.
             threads: how many work; as a rule as many as there are CPUs. The mesh is the same.
             progress: who is told how far it is: a callable that takes a number from 0 to 1, or True for a bar
@@ -383,7 +386,8 @@ class Model(ModelMembers):
         """
         with watcher(progress, "mesh") as told:
             box = _region(region)
-            made = _mesh.of_native(self._native.mesh(resolution, cell, box, thin, engine, threads, told))
+            native = self._native.mesh(resolution, cell, box, thin, sharp, engine, threads, told)
+            made = _mesh.of_native(native)
         if not made.closed:
             sides = f"at its sides {made.cut_sides}" if made.cut_sides != "none" else "somewhere"
             text = f"the region cuts the surface {sides}: the mesh is open there"

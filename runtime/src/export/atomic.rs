@@ -19,9 +19,9 @@ use tempfile::TempPath;
 /// it was.
 ///
 /// A file that is there already keeps its permissions, a new one gets those that files usually get. A link is
-/// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come. So is
-/// a file that may be written to in a folder that takes no new file: [`is_in_place`](Self::is_in_place) says
-/// so, for whoever has to be warned.
+/// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come. So
+/// is a file that may be written to in a folder that takes no new file: [`is_in_place`](Self::is_in_place)
+/// says so, for whoever has to be warned.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
@@ -52,8 +52,8 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// Whatever the system refuses; a folder, a file that is read-only, a path whose folder is not there, and a
-    /// new file, or one that is not to be replaced, in a folder that takes no new file.
+    /// Whatever the system refuses; a folder, a file that is read-only, a path whose folder is not there, and
+    /// a new file, or one that is not to be replaced, in a folder that takes no new file.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {

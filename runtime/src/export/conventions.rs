@@ -2,6 +2,7 @@
 //! there is room for.
 
 use std::fmt;
+use std::num::NonZeroU16;
 use std::ops::Sub;
 use std::str::FromStr;
 
@@ -32,6 +33,11 @@ pub struct Conventions {
     pub name: Option<&'static str>,
     /// How it has the place of a mesh that is far from the origin of the world.
     pub far: FarMeshes,
+    /// Whether a vertex on an edge of the surface is there once for each side, because a vertex has one
+    /// normal. Else positions are shared, and corners have normals of their own or none.
+    pub splits: bool,
+    /// Whether a file may have materials, each triangle of one, in place of colours.
+    pub materials: bool,
     /// The unit of lengths that a file states, unless [`ExportOptions::unit`](super::ExportOptions::unit)
     /// says otherwise; `None` if it states none.
     pub unit: Option<LengthUnit>,
@@ -200,6 +206,8 @@ pub(super) struct FileChoices<'a> {
     pub colors: ColorEncoding,
     /// Any, where a file states no unit.
     pub unit: LengthUnit,
+    /// The most materials, in a format that has any.
+    pub palette: Option<NonZeroU16>,
     /// What the mesh is called, where the format has a place for it.
     pub name: Option<&'a str>,
 }

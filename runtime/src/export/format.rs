@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::Write;
+use std::num::NonZeroU16;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -90,6 +91,8 @@ pub struct ExportOptions {
     pub colors: Option<ColorEncoding>,
     /// What a unit of the scene is, in a format that says so.
     pub unit: Option<LengthUnit>,
+    /// At most so many materials, each triangle of one, in a format that has any: for printers.
+    pub palette: Option<NonZeroU16>,
     /// What the mesh is called, in a format that has a place for it: see [`Conventions::name`].
     pub name: Option<String>,
 }
@@ -121,6 +124,7 @@ impl<'a> FileChoices<'a> {
             model: mesh.orientation.up,
             colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear),
             unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
+            palette: options.palette,
             name: options.name.as_deref(),
         }
     }

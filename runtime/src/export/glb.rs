@@ -53,6 +53,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: Some("`_NAME`, 32-bit floats"),
     name: Some("node and mesh"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: None,
 };
 
@@ -137,8 +139,8 @@ fn write_binary(
     Ok(())
 }
 
-/// The buffer views, one for every plane of numbers, and accessors, one for each of them and each piece, in the
-/// order of the bytes.
+/// The buffer views, one for every plane of numbers, and accessors, one for each of them and each piece, in
+/// the order of the bytes.
 #[derive(Default)]
 struct BufferLayout {
     accessors: Vec<Value>,

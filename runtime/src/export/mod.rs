@@ -19,6 +19,7 @@ mod conventions;
 mod format;
 mod glb;
 mod obj;
+mod palette;
 mod parts;
 mod ply;
 mod png;
@@ -33,6 +34,7 @@ pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, LengthUnit,
 pub use format::{ExportOptions, Format};
 pub use png::{PngEffort, write_png, write_png_with};
 
+use std::borrow::Cow;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -40,7 +42,7 @@ use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
 use crate::error::{Classified, ErrorKind};
-use crate::mesh::{Attribute, Mesh};
+use crate::mesh::{Attribute, Creases, Mesh};
 use crate::parallel::*;
 use conventions::FileChoices;
 use parts::WriteError;
@@ -120,6 +122,8 @@ pub fn write_with(
 ) -> Result<(), ExportError> {
     check(mesh)?;
     let mesh = &*mesh.right_handed();
+    let split = if format.conventions().splits { mesh.split() } else { Cow::Borrowed(mesh) };
+    let mesh = &*split;
     let choices = FileChoices::new(mesh, format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     format.write(mesh, choices, &mut out).map_err(|error| match error {
@@ -208,7 +212,32 @@ fn check(mesh: &Mesh) -> Result<(), ExportError> {
     if let Some(index) = first(&mesh.normals, is_endless) {
         return malformed(format!("the normal of vertex {index} is not finite"));
     }
-    Ok(())
+    check_creases(mesh).map_or(Ok(()), malformed)
+}
+
+/// What is wrong with the creases of a mesh.
+fn check_creases(mesh: &Mesh) -> Option<String> {
+    let Creases { vertices, normals, attributes, corners } = &mesh.creases;
+    let (sides, count) = (vertices.len(), mesh.positions.len());
+    if normals.len() != sides {
+        return Some(format!("{sides} sides of creases and {} normals", normals.len()));
+    }
+    let widths = mesh.attributes.iter().map(|attribute| attribute.width * sides);
+    if !corners.is_empty() && !attributes.iter().map(Vec::len).eq(widths) {
+        return Some("the attributes of creases are not those of the mesh".to_owned());
+    }
+    if let Some(side) = first(vertices, |&vertex| vertex as usize >= count) {
+        return Some(format!("side {side} of a crease names a vertex that does not exist"));
+    }
+    if let Some(side) = first(normals, |normal| !normal.iter().all(|number| number.is_finite())) {
+        return Some(format!("the normal of side {side} of a crease is not finite"));
+    }
+    let is_missing = |&[corner, side]: &[u32; 2]| {
+        let vertex = mesh.triangles.get(corner as usize / 3).map(|triangle| triangle[corner as usize % 3]);
+        vertex.is_none() || vertices.get(side as usize).copied() != vertex
+    };
+    let corner = first(corners, is_missing)?;
+    Some(format!("corner {corner} of a crease is not at the vertex of its side"))
 }
 
 /// The index of the first item with a property.

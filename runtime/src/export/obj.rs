@@ -21,6 +21,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: None,
     name: Some("`o`"),
     far: FarMeshes::Digits,
+    splits: false,
+    materials: false,
     unit: None,
 };
 
@@ -46,6 +48,11 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
         let [x, y, z] = choices.place(mesh.normals[vertex]);
         writeln!(bytes, "vn {x} {y} {z}")
     })?;
+    // Sides of edges: corners have normals of their own, and positions stay shared.
+    write_items(out, mesh.creases.normals.len(), |side, bytes| {
+        let [x, y, z] = choices.place(mesh.creases.normals[side]);
+        writeln!(bytes, "vn {x} {y} {z}")
+    })?;
     let uvs = uvs(mesh);
     if let Some(uvs) = uvs {
         write_items(out, mesh.positions.len(), |vertex, bytes| {
@@ -61,13 +68,26 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
             let triangle = first + triangle;
             // Counted from 1, which may be one more than a u32 holds.
             let [a, b, c] = mesh.triangles[triangle].map(|vertex| u64::from(vertex) + 1);
+            let [i, j, k] = normals_of(mesh, triangle);
             match uvs {
-                Some(_) => writeln!(bytes, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
-                None => writeln!(bytes, "f {a}//{a} {b}//{b} {c}//{c}"),
+                Some(_) => writeln!(bytes, "f {a}/{a}/{i} {b}/{b}/{j} {c}/{c}/{k}"),
+                None => writeln!(bytes, "f {a}//{i} {b}//{j} {c}//{k}"),
             }
         })?;
     }
     Ok(())
+}
+
+/// The numbers of a triangle's normals, from 1.
+fn normals_of(mesh: &Mesh, triangle: usize) -> [u64; 3] {
+    let mut normals = mesh.triangles[triangle].map(|vertex| u64::from(vertex) + 1);
+    let corners = &mesh.creases.corners;
+    let first = corners.partition_point(|[corner, _]| (*corner as usize) < 3 * triangle);
+    for &[corner, side] in corners[first..].iter().take_while(|[corner, _]| *corner as usize / 3 == triangle)
+    {
+        normals[corner as usize % 3] = mesh.normals.len() as u64 + u64::from(side) + 1;
+    }
+    normals
 }
 
 /// The vertices, at these positions, and their colours.

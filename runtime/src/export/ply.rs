@@ -25,6 +25,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: Some("properties, 32-bit floats"),
     name: None,
     far: FarMeshes::Digits,
+    splits: true,
+    materials: false,
     unit: None,
 };
 

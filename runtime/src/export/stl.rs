@@ -30,6 +30,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: None,
     name: None,
     far: FarMeshes::Rounded,
+    splits: false,
+    materials: false,
     unit: None,
 };
 

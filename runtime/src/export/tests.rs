@@ -30,7 +30,71 @@ fn tetrahedron() -> Mesh {
         ],
         triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
         parts: Vec::new(),
+        creases: Creases::default(),
     }
+}
+
+/// The same with an edge at vertex 1: its second triangle shows a side with another normal and colour.
+fn creased() -> Mesh {
+    let mesh = tetrahedron();
+    let widths = mesh.attributes.iter().map(|attribute| vec![0.25; attribute.width]);
+    let creases = Creases {
+        vertices: vec![1],
+        normals: vec![[0.0, -1.0, 0.0]],
+        attributes: widths.collect(),
+        corners: vec![[4, 0]],
+    };
+    Mesh { creases, ..mesh }
+}
+
+#[test]
+fn edges_have_a_vertex_for_each_side_or_a_normal() {
+    let mesh = creased();
+    let split = mesh.split();
+    assert_eq!((split.positions.len(), split.positions[4]), (5, mesh.positions[1]));
+    assert_eq!(split.triangles, [[0, 2, 1], [0, 4, 3], [1, 2, 3], [2, 0, 3]]);
+    assert!(split.attributes.iter().all(|attribute| attribute.at(4).iter().all(|&value| value == 0.25)));
+    for format in [Format::Glb, Format::Ply, Format::Usda] {
+        assert_eq!(bytes(&mesh, format), bytes(&split, format), "{format}");
+    }
+    assert_eq!(bytes(&mesh, Format::Stl), bytes(&tetrahedron(), Format::Stl));
+    let obj = String::from_utf8(bytes(&mesh, Format::Obj)).unwrap();
+    assert_eq!(obj.lines().filter(|line| line.starts_with("v ")).count(), 4);
+    assert!(obj.contains("vn 0 -0 -1\n") || obj.contains("vn 0 0 1\n"), "{obj}");
+    assert!(obj.contains("f 1//1 3//3 2//2\nf 1//1 2//5 4//4\nf 2//2 3//3 4//4\n"), "{obj}");
+    let text = three_mf_model(&bytes(&mesh, Format::ThreeMf));
+    assert_eq!(text.lines().filter(|line| line.starts_with("<vertex ")).count(), 4);
+    assert!(text.contains("<m:color color=\"#898989FF\"/>"), "{text}");
+    // A mirror turns triangles around, and their corners with them.
+    let left = Orientation { up: ModelUp::Z, handed: Handed::Left };
+    let mirrored = Mesh { orientation: left, ..creased() };
+    let mirrored = mirrored.right_handed();
+    assert_eq!((mirrored.triangles[1], &mirrored.creases.corners[..]), ([0, 3, 1], &[[5, 0]][..]));
+    let wrong = |change: fn(&mut Mesh)| {
+        let mut mesh = creased();
+        change(&mut mesh);
+        let error = write(&mesh, Format::Glb, &mut Vec::new()).unwrap_err();
+        assert!(matches!(error, ExportError::Malformed(_)), "{error}");
+    };
+    wrong(|mesh| mesh.creases.corners[0] = [5, 0]);
+    wrong(|mesh| mesh.creases.corners[0] = [4, 1]);
+    wrong(|mesh| mesh.creases.corners[0] = [99, 0]);
+    wrong(|mesh| mesh.creases.vertices[0] = 9);
+    wrong(|mesh| mesh.creases.normals[0][1] = f32::NAN);
+    wrong(|mesh| mesh.creases.normals.clear());
+    wrong(|mesh| mesh.creases.attributes[0].clear());
+}
+
+#[test]
+fn three_mf_with_a_palette_has_a_material_for_each_triangle() {
+    let options = ExportOptions { palette: std::num::NonZeroU16::new(2), ..ExportOptions::default() };
+    let mut file = Vec::new();
+    write_with(&tetrahedron(), Format::ThreeMf, &options, &mut file).unwrap();
+    let text = three_mf_model(&file);
+    assert!(text.contains("<basematerials id=\"1\">") && !text.contains("xmlns:m"), "{text}");
+    assert_eq!(text.matches("<base name=").count(), 2);
+    let triangles: Vec<&str> = text.lines().filter(|line| line.starts_with("<triangle ")).collect();
+    assert!(triangles.iter().all(|line| line.contains(" p1=") && !line.contains(" p2=")), "{text}");
 }
 
 fn bytes(mesh: &Mesh, format: Format) -> Vec<u8> {

@@ -1,11 +1,13 @@
 //! 3MF: the core specification 1.3 and colour groups of its materials extension, in an archive.
 //!
 //! Every vertex of a triangle has a colour of the one group, which has each colour of the mesh once, in the
-//! order of its bytes. A mesh without triangles is a file without objects, as an object has to have some.
+//! order of its bytes. With a palette there are so many base materials instead, and each triangle is of one:
+//! borders are crisp, for printers with so many materials. A mesh without triangles is a file without objects, as an object has to have some.
 
 use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
+use super::palette;
 use super::parts::{WriteError, colors, write_items};
 use super::zip::Archive;
 use crate::mesh::{Mesh, MeshPiece};
@@ -22,6 +24,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: None,
     name: Some("`name` of the object"),
     far: FarMeshes::Node,
+    splits: false,
+    materials: true,
     unit: Some(LengthUnit::Millimetre),
 };
 
@@ -59,10 +63,10 @@ const fn unit(unit: LengthUnit) -> &'static str {
     }
 }
 
-fn model(mesh: &Mesh, choices: FileChoices<'_>, mut out: &mut dyn Write) -> Result<(), WriteError> {
+fn model(mesh: &Mesh, choices: FileChoices<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let FileChoices { colors: encoding, unit: length, .. } = choices;
     write!(out, "{HEAD}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{CORE}\"", unit(length))?;
-    if colors(mesh).is_some() {
+    if colors(mesh).is_some() && choices.palette.is_none() {
         write!(out, " xmlns:m=\"{MATERIALS}\"")?;
     }
     writeln!(out, ">\n<metadata name=\"Application\">jbt</metadata>\n<resources>")?;
@@ -70,14 +74,14 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, mut out: &mut dyn Write) -> Resu
         writeln!(out, "</resources>\n<build/>\n</model>")?;
         return Ok(());
     }
-    let palette = colors(mesh).map(|colors| Palette::new(colors, encoding));
+    // Positions are shared; corners have the colours of their sides.
+    let split = mesh.split();
+    let palette = colors(&split).map(|colors| match choices.palette {
+        Some(most) => Palette::of_materials(colors, &split.triangles, (encoding, most.get().into())),
+        None => Palette::new(colors, &split.triangles, encoding),
+    });
     if let Some(palette) = &palette {
-        writeln!(out, "<m:colorgroup id=\"1\">")?;
-        write_items(&mut out, palette.colors.len(), |index, bytes| {
-            let [r, g, b] = palette.colors[index];
-            writeln!(bytes, "<m:color color=\"#{r:02X}{g:02X}{b:02X}FF\"/>")
-        })?;
-        writeln!(out, "</m:colorgroup>")?;
+        palette.write(choices.palette.is_some(), out)?;
     }
     let pieces: Vec<_> = mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()).collect();
     for (place, piece) in pieces.iter().enumerate() {
@@ -116,12 +120,14 @@ fn object(
     })?;
     writeln!(out, "</vertices>\n<triangles>")?;
     write_items(&mut out, piece.triangles.len(), |triangle, bytes| {
-        let triangle = mesh.triangles[piece.triangles.start + triangle];
-        let [a, b, c] = triangle.map(|vertex| vertex as usize - first);
+        let triangle = piece.triangles.start + triangle;
+        let [a, b, c] = mesh.triangles[triangle].map(|vertex| vertex as usize - first);
         write!(bytes, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
-        if let Some(palette) = palette {
-            let [a, b, c] = triangle.map(|vertex| palette.places[vertex as usize]);
-            write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?;
+        match palette.map(|palette| palette.corners[triangle]) {
+            // One material for all of it.
+            Some([a, ..]) if choices.palette.is_some() => write!(bytes, " pid=\"1\" p1=\"{a}\"")?,
+            Some([a, b, c]) => write!(bytes, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")?,
+            None => {}
         }
         writeln!(bytes, "/>")
     })?;
@@ -145,20 +151,69 @@ fn in_quotes(text: &str) -> String {
     quoted
 }
 
-/// The colours of a mesh, each once, and the place of that of each vertex.
+/// The colours of a mesh, each once, and the places of those of the corners of each triangle.
 struct Palette {
     colors: Vec<[u8; 3]>,
-    places: Vec<u32>,
+    corners: Vec<[u32; 3]>,
 }
 
 impl Palette {
-    fn new(linear: &[[f32; 3]], encoding: ColorEncoding) -> Self {
-        let bytes = |color: &[f32; 3]| color.map(|channel| srgb::byte(encoding.encode(channel)));
-        let all: Vec<[u8; 3]> = linear.iter().map(bytes).collect();
+    fn new(linear: &[[f32; 3]], triangles: &[[u32; 3]], encoding: ColorEncoding) -> Self {
+        let all = bytes_of(linear, encoding);
         let mut colors = all.clone();
         colors.sort_unstable();
         colors.dedup();
-        let place = |color: &[u8; 3]| colors.binary_search(color).unwrap_or(0) as u32;
-        Self { places: all.iter().map(place).collect(), colors }
+        let place = |vertex: u32| colors.binary_search(&all[vertex as usize]).unwrap_or(0) as u32;
+        Self { corners: triangles.iter().map(|triangle| triangle.map(place)).collect(), colors }
     }
+
+    /// Of at most so many colours, and one for each triangle: that which is nearest to two of its corners,
+    /// or to their mean.
+    fn of_materials(
+        linear: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        (encoding, most): (ColorEncoding, usize),
+    ) -> Self {
+        let all = bytes_of(linear, encoding);
+        let colors = palette::reduced(&all, most);
+        let of_vertex: Vec<usize> = all.iter().map(|&color| palette::nearest(&colors, color)).collect();
+        let material = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|vertex| of_vertex[vertex as usize]);
+            let chosen = if b == c {
+                b
+            } else if a == b || a == c {
+                a
+            } else {
+                let sum =
+                    |n: usize| triangle.iter().map(|&vertex| u16::from(all[vertex as usize][n])).sum::<u16>();
+                palette::nearest(&colors, [0, 1, 2].map(|n| (sum(n) / 3) as u8))
+            };
+            [chosen as u32; 3]
+        };
+        Self { corners: triangles.iter().map(material).collect(), colors }
+    }
+
+    /// The resource that triangles name: base materials, or a group of colours.
+    fn write(&self, are_materials: bool, mut out: &mut dyn Write) -> Result<(), WriteError> {
+        writeln!(
+            out,
+            "{}",
+            if are_materials { "<basematerials id=\"1\">" } else { "<m:colorgroup id=\"1\">" }
+        )?;
+        write_items(&mut out, self.colors.len(), |index, bytes| {
+            let [r, g, b] = self.colors[index];
+            if are_materials {
+                let number = index + 1;
+                writeln!(bytes, "<base name=\"{number}\" displaycolor=\"#{r:02X}{g:02X}{b:02X}FF\"/>")
+            } else {
+                writeln!(bytes, "<m:color color=\"#{r:02X}{g:02X}{b:02X}FF\"/>")
+            }
+        })?;
+        writeln!(out, "{}", if are_materials { "</basematerials>" } else { "</m:colorgroup>" })?;
+        Ok(())
+    }
+}
+
+fn bytes_of(linear: &[[f32; 3]], encoding: ColorEncoding) -> Vec<[u8; 3]> {
+    linear.iter().map(|color| color.map(|channel| srgb::byte(encoding.encode(channel)))).collect()
 }

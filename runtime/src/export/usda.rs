@@ -22,6 +22,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     attributes: Some("`primvars`, decimals"),
     name: Some("`displayName`"),
     far: FarMeshes::Node,
+    splits: true,
+    materials: false,
     unit: Some(LengthUnit::Metre),
 };
 
@@ -111,6 +113,18 @@ fn write_piece(
         };
         list(out, "texCoord2f[] primvars:st", vertices, uv, EACH)?;
     }
+    write_attributes(attributes, piece, out)?;
+    writeln!(out, "    }}")?;
+    Ok(())
+}
+
+/// The attributes of the vertices of a piece.
+fn write_attributes(
+    attributes: &[NamedAttribute<'_>],
+    piece: &MeshPiece<'_>,
+    out: &mut impl Write,
+) -> Result<(), WriteError> {
+    let (first, vertices) = (piece.vertices.start, piece.vertices.len());
     for NamedAttribute { names, attribute } in attributes {
         let (width, name) = (attribute.width, format!("float[] primvars:{}", names[0]));
         let values = |vertex: usize| {
@@ -123,7 +137,6 @@ fn write_piece(
         );
         list(out, &name, vertices, values, if width == 1 { EACH } else { &about })?;
     }
-    writeln!(out, "    }}")?;
     Ok(())
 }
 

@@ -4,6 +4,7 @@ use jbt_model::check::CheckedTree;
 
 use super::change::{BrickRanges, BrickUpdate, LiveChange};
 use super::model::{LastModel, ModelState};
+use crate::boxes::Box3;
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
@@ -107,7 +108,7 @@ impl LiveMesh {
 
     fn start(compiled: &Compiled, settings: Polygonize, hook: Hook<'_>) -> Result<Self, PolygonizeError> {
         let lattice = settings.lattice(compiled.tree())?;
-        let kernels = Kernels::new(compiled)?;
+        let kernels = Kernels::new(compiled, settings.sharp)?;
         let mut mesh =
             BrickMesh::new(lattice.clone(), compiled.origin().point(), compiled.tree().orientation());
         let options = settings.options(compiled.tree());
@@ -161,11 +162,19 @@ impl LiveMesh {
     fn edited(&self, tree: &CheckedTree) -> Result<EditedModel, PolygonizeError> {
         let compiled = self.compiled.updated(tree);
         let lattice = self.lattice_for(compiled.tree())?;
-        let kernels = Kernels::new(&compiled)?;
+        let kernels = Kernels::new(&compiled, self.settings.sharp)?;
         let options = self.settings.options(compiled.tree());
         let same_iso = options.iso.to_bits() == self.settings.options(self.tree()).iso.to_bits();
         let touched = match kernels.edit(&self.kernels) {
-            Edit::Boxes(boxes) if same_iso => self.mesh.touched(&lattice, &boxes),
+            Edit::Boxes(boxes) if same_iso => {
+                // A vertex on an edge may look into the cells around its brick.
+                let reach = if kernels.is_sharp() { lattice.spacing() as f32 } else { 0.0 };
+                let boxes: Vec<Box3> = boxes
+                    .iter()
+                    .map(|Box3 { low, high }| Box3::new(low.map(|c| c - reach), high.map(|c| c + reach)))
+                    .collect();
+                self.mesh.touched(&lattice, &boxes)
+            }
             Edit::Boxes(_) | Edit::Everywhere => None,
         };
         Ok(EditedModel { compiled, kernels, lattice, options, touched })

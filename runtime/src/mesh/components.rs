@@ -55,9 +55,9 @@ impl Mesh {
             let component = &mut found[places[of] as usize];
             component.triangles += 1;
             for corner in corners {
-                for axis in 0..3 {
-                    component.bounds.low[axis] = component.bounds.low[axis].min(corner[axis]);
-                    component.bounds.high[axis] = component.bounds.high[axis].max(corner[axis]);
+                for (axis, x) in corner.into_iter().enumerate() {
+                    component.bounds.low[axis] = component.bounds.low[axis].min(x);
+                    component.bounds.high[axis] = component.bounds.high[axis].max(x);
                 }
             }
             // From a corner of its first triangle: digits are not lost far from the origin.

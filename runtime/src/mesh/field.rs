@@ -31,6 +31,30 @@ pub trait Field: Divisible {
     /// The cost of the field at a point of a region.
     fn work(&self, region: &Self::Region) -> FieldWork;
 
+    /// Whether the surface may have edges and corners: whether [`decided`](Self::decided) tells crossings
+    /// apart. By default it has none.
+    fn is_sharp(&self) -> bool {
+        false
+    }
+
+    /// The field, its gradient and its signature at each point: a number that tells which operands decide
+    /// about the field there, as the winner of a union. An edge of the surface is where it changes. A field
+    /// without edges has one signature.
+    ///
+    /// # Errors
+    /// Any error of the evaluation; the mesher stops and returns it.
+    fn decided(
+        &self,
+        region: &Self::Region,
+        [x, y, z]: [&[f32]; 3],
+        field: &mut [f32],
+        gradient: [&mut [f32]; 3],
+        signature: &mut [f32],
+    ) -> Result<(), Self::Error> {
+        signature.fill(0.0);
+        self.gradient(region, x, y, z, field, gradient)
+    }
+
     /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is
     /// outside.
     ///

@@ -19,6 +19,22 @@ pub struct Attribute {
     pub values: Vec<f32>,
 }
 
+/// Corners of triangles at which normals and attributes are not those of the vertex. Each is that of a *side*
+/// of a vertex: a smooth part of the surface that ends there.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Creases {
+    /// The vertex of each side, ascending.
+    pub vertices: Vec<u32>,
+    /// The unit normal of each side.
+    pub normals: Vec<[f32; 3]>,
+    /// For each attribute of the mesh, its values at each side, one side after the other. Empty where there
+    /// are no sides.
+    pub attributes: Vec<Vec<f32>>,
+    /// Which corner shows which side: three times the triangle plus the corner, and the side. Ascending.
+    pub corners: Vec<[u32; 2]>,
+}
+
 /// An indexed triangle mesh with normals and attributes.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,6 +53,10 @@ pub struct Mesh {
     pub attributes: Vec<Attribute>,
     /// Three indices of vertices each, counter-clockwise when seen from outside, in right-handed axes.
     pub triangles: Vec<[u32; 3]>,
+    /// Where corners of triangles have other normals and attributes than their vertices: at edges and
+    /// corners of the surface. See [`split`](Self::split).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub creases: Creases,
     /// The parts of a model that has some, in order: each a closed surface of its own, with its own vertices.
     /// Empty for one solid.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -81,7 +101,18 @@ impl Mesh {
             // A mirror turns every triangle around.
             triangles: self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
             parts: self.parts.clone(),
+            creases: self.mirrored_creases(),
         })
+    }
+
+    fn mirrored_creases(&self) -> Creases {
+        let mut creases = self.creases.clone();
+        creases.normals.iter_mut().for_each(|normal| *normal = self.orientation.right_handed(*normal));
+        for [corner, _] in &mut creases.corners {
+            *corner = *corner - *corner % 3 + [0, 2, 1][*corner as usize % 3];
+        }
+        creases.corners.sort_unstable();
+        creases
     }
 
     /// The attribute of this name.

@@ -19,6 +19,7 @@
 //!              kept off the sides of its cell; normal and attributes                        (vertex, pull)
 //!              those at jumps of the field are put where halved edges say                   (vertex/suspect)
 //!              those that a crease keeps off the surface are brought onto it                (settle)
+//!              those on edges and corners of the surface are put there                      (vertex/sharp)
 //!     quads  = one for each crossed edge, through the four cells around it,
 //!              split along its shorter diagonal                                             (surface)
 //!     check that the mesh is closed                                                         (check)
@@ -41,6 +42,7 @@ mod brick;
 mod cell;
 mod check;
 mod components;
+mod crease;
 mod crossing;
 mod divide;
 mod error;
@@ -56,6 +58,8 @@ mod report;
 mod sample;
 mod scope;
 mod settle;
+#[cfg(feature = "simplify")]
+mod simplify;
 mod stage;
 mod surface;
 mod thin;
@@ -68,11 +72,13 @@ pub use check::{Defect, check_manifold, is_closed};
 pub use components::MeshComponent;
 pub use error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
 pub use field::{Field, FieldWork};
-pub use indexed::{Attribute, Mesh, MeshPart};
+pub use indexed::{Attribute, Creases, Mesh, MeshPart};
 pub use lattice::{Lattice, LatticeError};
 pub use options::Options;
 pub use parts::MeshPiece;
 pub use report::{MAX_NEAR, MeshReport, Sides, ThinReport};
+#[cfg(feature = "simplify")]
+pub use simplify::Simplify;
 
 pub(crate) use block::{busy, extract as extract_block};
 #[cfg(feature = "export")]
@@ -84,7 +90,9 @@ use crate::progress::{EACH, Progress};
 use crossing::Crossings;
 use divide::BrickDivision;
 use scope::DivisionScope;
+use surface::SideCorner;
 use vertex::batch::VertexSource;
+use vertex::side::SharpVertex;
 
 /// Meshes the surface `field = iso` over a lattice.
 ///
@@ -133,6 +141,19 @@ pub(crate) fn extract_hooked<F: Field>(
     Ok((mesh, report))
 }
 
+/// The sides of vertices, and the corners that show them.
+fn creases(mesh: &Mesh, sharp: &[SharpVertex], corners: &[SideCorner]) -> Creases {
+    let widths: Vec<usize> = mesh.attributes.iter().map(|attribute| attribute.width).collect();
+    let (mut creases, mut first) = (Creases::default(), Vec::with_capacity(sharp.len()));
+    for vertex in sharp {
+        first.push(creases.vertices.len());
+        creases.push(vertex.vertex, vertex, &widths);
+    }
+    let corner = |of: &SideCorner| [of.corner, (first[of.sharp] + of.side) as u32];
+    creases.corners = corners.iter().map(corner).collect();
+    creases
+}
+
 /// Meshes the bricks of a lattice.
 fn polygonize<F: Field>(
     field: &F,
@@ -164,6 +185,7 @@ fn polygonize<F: Field>(
         jump_evaluations: done.jump_evaluations,
         jump_vertices: done.jump_vertices,
         crowded: vertex::is_crowded(&bricks.axes),
+        sharp_vertices: done.sharp.len() as u64,
         crossing_cells: crossings.cells.len() as u64,
         flipped_faces: crossings.flipped_faces,
         closed: !crossings.is_open,
@@ -172,6 +194,9 @@ fn polygonize<F: Field>(
     report.cut_sides.add(boxes.cut);
     crossings.corners = Vec::new();
     mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
+    let positions = &mesh.positions;
+    let corners = surface::crease(bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
+    mesh.creases = creases(&mesh, &done.sharp, &corners);
     surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
     Ok((mesh, report, crossings))
 }

@@ -25,19 +25,22 @@ pub struct Options {
     /// [`MeshReport::thin`](super::MeshReport::thin). The search needs a field that knows ranges of boxes,
     /// and does not change the mesh.
     pub thin_parts: bool,
+    /// Whether vertices go to edges and corners of the surface, where the field knows any: see
+    /// [`Field::decided`](super::Field::decided).
+    pub sharp: bool,
 }
 
 impl Default for Options {
-    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts.
+    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts, sharp edges.
     fn default() -> Self {
-        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false }
+        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false, sharp: true }
     }
 }
 
 impl Options {
     /// Checks the options.
     pub(super) fn check<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
-        let &Options { iso, pulls, brick, verify: _, thin_parts: _ } = self;
+        let &Options { iso, pulls, brick, verify: _, thin_parts: _, sharp: _ } = self;
         if !iso.is_finite() {
             return Err(MeshError::Iso { iso });
         }

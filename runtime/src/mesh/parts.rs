@@ -54,6 +54,7 @@ impl Mesh {
     pub fn piece(&self, piece: &MeshPiece<'_>) -> Self {
         let MeshPiece { vertices, triangles, .. } = piece;
         let first = vertices.start as u32;
+        let widths: Vec<usize> = self.attributes.iter().map(|attribute| attribute.width).collect();
         let mut attributes = self.attributes.clone();
         for attribute in &mut attributes {
             let width = attribute.width;
@@ -69,20 +70,31 @@ impl Mesh {
                 .iter()
                 .map(|triangle| triangle.map(|vertex| vertex - first))
                 .collect(),
+            creases: self.creases.of(vertices.clone(), triangles.clone(), &widths),
             parts: Vec::new(),
         }
     }
 
-    /// Adds a mesh as a part. Both are over this lattice, and have the same attributes.
-    pub(crate) fn add_part(&mut self, name: &str, mut other: Self, lattice: &Lattice) {
-        self.meet(&mut other, lattice);
-        let first = self.positions.len() as u32;
-        if self.parts.is_empty() {
-            self.attributes = other
-                .attributes
-                .iter()
-                .map(|one| super::Attribute { values: Vec::new(), ..one.clone() })
-                .collect();
+    /// The mesh of what becomes of each piece, which keeps its attributes.
+    pub(crate) fn each_piece(&self, become_of: impl Fn(Self) -> Self) -> Self {
+        let mut all = Self { origin: self.origin, orientation: self.orientation, ..Self::default() };
+        for piece in self.pieces() {
+            all.append(become_of(self.piece(&piece)));
+            if let Some(name) = piece.name {
+                let (vertices, triangles) = (all.positions.len(), all.triangles.len());
+                all.parts.push(MeshPart { name: name.to_owned(), vertices, triangles });
+            }
+        }
+        all
+    }
+
+    /// Adds the vertices and the triangles of another mesh. Both have the same attributes, unless there is
+    /// nothing yet.
+    fn append(&mut self, mut other: Self) {
+        let (first, triangles) = (self.positions.len() as u32, self.triangles.len());
+        if first == 0 {
+            let empty = |one: &super::Attribute| super::Attribute { values: Vec::new(), ..one.clone() };
+            self.attributes = other.attributes.iter().map(empty).collect();
         }
         self.positions.append(&mut other.positions);
         self.normals.append(&mut other.normals);
@@ -90,6 +102,13 @@ impl Mesh {
             to.values.append(&mut from.values);
         }
         self.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+        self.creases.append(other.creases, (first, triangles));
+    }
+
+    /// Adds a mesh as a part. Both are over this lattice, and have the same attributes.
+    pub(crate) fn add_part(&mut self, name: &str, mut other: Self, lattice: &Lattice) {
+        self.meet(&mut other, lattice);
+        self.append(other);
         let (vertices, triangles) = (self.positions.len(), self.triangles.len());
         self.parts.push(MeshPart { name: name.to_owned(), vertices, triangles });
     }

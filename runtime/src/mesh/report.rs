@@ -80,6 +80,8 @@ pub struct MeshReport {
     pub jump_evaluations: u64,
     /// Vertices at which the field jumps, as at the walls of `within`.
     pub jump_vertices: u64,
+    /// Vertices that were put on edges and corners of the surface.
+    pub sharp_vertices: u64,
     /// Whether cells are shorter than 16 steps of f32 somewhere in the lattice: then vertices of different
     /// cells may coincide.
     pub crowded: bool,

@@ -7,7 +7,9 @@ mod margin;
 mod normal;
 mod room;
 mod seed;
+mod sharp;
 mod sheet;
+pub(super) mod side;
 mod start;
 mod suspect;
 mod wall;
@@ -66,6 +68,7 @@ pub(crate) fn finish<F: Field>(
         attributes: attributes.into_iter().map(attribute).collect(),
         triangles: Vec::new(),
         parts: Vec::new(),
+        creases: Default::default(),
     };
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
@@ -117,7 +120,9 @@ fn finish_group<F: Field>(
         }
         batch.start(source, brick, range.len());
         progress.breathe()?;
-        done = done.and(batch.evaluate(source, brick, widths.iter().sum()).map_err(MeshError::Field)?);
+        let mut of_brick = batch.evaluate(source, brick, widths.iter().sum()).map_err(MeshError::Field)?;
+        of_brick.sharp.iter_mut().for_each(|sharp| sharp.vertex += starts[brick] as u32);
+        done = done.and(of_brick);
         batch.write(&mut target, range, widths);
         done.doubtful.extend(batch.doubtful.iter().map(|&vertex| (starts[brick] + vertex) as u32));
     }
@@ -152,7 +157,9 @@ impl VertexBatch {
         };
         let again = if options.pulls == 0 { Done::default() } else { self.look_again(source, brick)? };
         self.separate();
-        Ok(done.and(again))
+        let done = done.and(again);
+        let is_sharp = options.sharp && options.pulls > 0 && field.is_sharp();
+        if is_sharp { Ok(done.and(self.sharpen(source, brick)?)) } else { Ok(done) }
     }
 
     /// Writes the vertices to their range of the target, and records vertices without a normal.

@@ -21,7 +21,8 @@ impl Polygonize {
         let settings = *self;
         Job::new(move |hook| {
             let options = settings.options(compiled.tree());
-            let kernels = Kernels::new(compiled)?;
+            // Ranges ask nothing else.
+            let kernels = Kernels::new(compiled, false)?;
             Ok(mesh::busy(&kernels, lattice, (&options, edge), hook)?)
         })
     }
@@ -74,7 +75,7 @@ impl Polygonize {
         hook: crate::job::Hook<'_>,
     ) -> Result<MeshBlock, PolygonizeError> {
         let tree = compiled.tree();
-        let kernels = Kernels::new(compiled)?;
+        let kernels = Kernels::new(compiled, self.sharp)?;
         let options = self.options(tree);
         let mut made = mesh::extract_block(&kernels, lattice, (&options, block, reach), hook)?;
         made.mesh.origin = tree.origin().point();

@@ -3,7 +3,7 @@
 use jbt_model::query::Query;
 
 use crate::boxes::{Box3, Divisible, Range};
-use crate::compiled::{Compiled, Task};
+use crate::compiled::{Compiled, Decisions, Task};
 use crate::counter::Counters;
 use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
@@ -18,15 +18,23 @@ pub(crate) struct Kernels {
     field: Evaluator,
     gradient: Evaluator,
     all: Evaluator,
+    /// What tells which operands decide, if edges are wanted and there are any.
+    decisions: Option<Decisions>,
 }
 
 impl Kernels {
     /// Those of a compiled model.
-    pub(crate) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
+    pub(crate) fn new(compiled: &Compiled, sharp: bool) -> Result<Self, CompileError> {
         let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
         compiled.prepare(&Task::Mesh.needs())?;
         let [field, gradient, all] = queries.map(|query| compiled.regional(query));
-        Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all? })
+        let decisions = if sharp { compiled.decisions()? } else { None };
+        Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all?, decisions })
+    }
+
+    /// Whether the mesh may have edges.
+    pub(crate) fn is_sharp(&self) -> bool {
+        self.decisions.is_some()
     }
 
     /// What runs the field; the others may have fallen back to the interpreter.
@@ -79,6 +87,27 @@ impl Field for Kernels {
 
     fn work(&self, region: &Region) -> FieldWork {
         FieldWork { evaluations: self.field.evaluations_in(region), ops: self.field.ops_in(region) }
+    }
+
+    fn is_sharp(&self) -> bool {
+        self.is_sharp()
+    }
+
+    fn decided(
+        &self,
+        region: &Region,
+        [x, y, z]: [&[f32]; 3],
+        field: &mut [f32],
+        [gx, gy, gz]: [&mut [f32]; 3],
+        signature: &mut [f32],
+    ) -> Result<(), EvalError> {
+        match &self.decisions {
+            Some(decisions) => decisions.eval_region(region, [x, y, z], &mut [field, gx, gy, gz, signature]),
+            None => {
+                signature.fill(0.0);
+                self.gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
+            }
+        }
     }
 
     fn field(

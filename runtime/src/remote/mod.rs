@@ -17,6 +17,7 @@
 //! has are lowered there, and [`RowSource::rows`] of them are rows of the whole, if their shapes are
 //! [equal](ModelShape::eq).
 
+mod error;
 mod header;
 mod part;
 mod prune_bytes;
@@ -24,6 +25,7 @@ mod rows;
 mod shape;
 
 pub use crate::bytes::FormatError;
-pub use part::{ModelPart, RemoteError, from_rows};
+pub use error::RemoteError;
+pub use part::{ModelPart, from_rows};
 pub use rows::{ModelRows, RowSource};
 pub use shape::ModelShape;

@@ -2,8 +2,8 @@
 
 use jbt_ir::{Entity as _, Function, InstKind, Rule, Store, Table, Value};
 use jbt_lower::prune_info::{
-    ContestGroup, ContestKind, DecidedRows, Decision, DecisionKind, PruneInfo, RowContest, SupportSpace,
-    TablePruneInfo,
+    ContestDifference, ContestGroup, ContestKind, DecidedRows, Decision, DecisionKind, DifferenceSide,
+    PruneInfo, RowContest, StepFields, SupportSpace, TablePruneInfo,
 };
 use jbt_model::combine::Extreme;
 
@@ -17,6 +17,8 @@ const DECISIONS: [DecisionKind; 4] = [
     DecisionKind::DifferenceLeft,
     DecisionKind::DifferenceRight,
 ];
+const STEPS: [StepFields; 2] = [StepFields::Plain, StepFields::Complements];
+const SIDES: [DifferenceSide; 2] = [DifferenceSide::Left, DifferenceSide::Right];
 const DECIDED: [DecidedRows; 3] =
     [DecidedRows::All, DecidedRows::Each { free: false }, DecidedRows::Each { free: true }];
 
@@ -47,7 +49,8 @@ pub(super) fn write(info: &PruneInfo, writer: &mut ByteWriter) {
     info.contests.iter().for_each(|contest| write_contest(contest, writer));
 }
 
-fn write_contest(RowContest { extreme, kind, groups, node }: &RowContest, writer: &mut ByteWriter) {
+fn write_contest(contest: &RowContest, writer: &mut ByteWriter) {
+    let RowContest { extreme, kind, groups, node, difference } = contest;
     writer.u8(place(&EXTREMES, *extreme));
     match kind {
         ContestKind::All(None) => writer.u8(0),
@@ -55,20 +58,33 @@ fn write_contest(RowContest { extreme, kind, groups, node }: &RowContest, writer
             writer.u8(1);
             writer.u32(number.to_bits());
         }
-        ContestKind::Steps(table, column) => {
+        ContestKind::Steps(table, column, fields) => {
             writer.u8(2);
             writer.u32(table.index() as u32);
             writer.u32(*column as u32);
+            writer.u8(place(&STEPS, *fields));
         }
     }
     writer.count(groups.len());
-    for ContestGroup { table, field, rows } in groups {
-        writer.u32(table.index() as u32);
-        writer.u32(field.index() as u32);
-        writer.u8(u8::from(*rows));
+    groups.iter().for_each(|group| write_group(group, writer));
+    write_probe(*node, writer);
+    writer.u8(u8::from(difference.is_some()));
+    if let Some(ContestDifference { side, other, node }) = difference {
+        writer.u8(place(&SIDES, *side));
+        write_group(other, writer);
+        write_probe(*node, writer);
     }
-    writer.u8(u8::from(node.is_some()));
-    writer.u32(node.unwrap_or(0) as u32);
+}
+
+fn write_group(ContestGroup { table, field, rows }: &ContestGroup, writer: &mut ByteWriter) {
+    writer.u32(table.index() as u32);
+    writer.u32(field.index() as u32);
+    writer.u8(u8::from(*rows));
+}
+
+fn write_probe(probe: Option<usize>, writer: &mut ByteWriter) {
+    writer.u8(u8::from(probe.is_some()));
+    writer.u32(probe.unwrap_or(0) as u32);
 }
 
 /// Reads it, for the range function of the model. The tables have no rows.
@@ -125,39 +141,72 @@ fn read_contest(
         1 => ContestKind::All(Some(reader.f32()?)),
         _ => {
             let table = Table::new(reader.below(tables)?);
-            ContestKind::Steps(table, reader.below(function.tables[table].columns.len())?)
+            let column = reader.below(function.tables[table].columns.len())?;
+            ContestKind::Steps(table, column, reader.one_of(&STEPS)?)
         }
     };
     let mut groups = Vec::new();
     for _ in 0..reader.count(9)? {
-        let table = Table::new(reader.below(tables)?);
-        let (field, rows) = (Value::new(reader.below(function.values.len())?), reader.flag()?);
-        if !bodies.see(table, field) {
-            return Err(reader.error(format!("the rows of {table} do not see {field}")));
-        }
-        groups.push(ContestGroup { table, field, rows });
+        groups.push(read_group(reader, function, bodies)?);
     }
-    let (is_there, node) = (reader.flag()?, reader.u32()? as usize);
-    if is_there && node + 1 >= function.outputs.len() {
-        return Err(reader.error("a contest has a probe that is not there"));
-    }
-    if !hang_together(function, kind, &groups) {
+    let node = read_probe(reader, function)?;
+    let owner = owner(function, kind, &groups);
+    if owner.is_none() {
         return Err(reader.error("the operands of a contest hang under different tables"));
     }
-    Ok(RowContest { extreme, kind, groups, node: is_there.then_some(node) })
+    let mut difference = None;
+    if reader.flag()? {
+        let side = reader.one_of(&SIDES)?;
+        let other = read_group(reader, function, bodies)?;
+        if !is_at_or_above(function, owner, other.table) {
+            return Err(reader.error(format!("{} is not above the operands of a contest", other.table)));
+        }
+        difference = Some(ContestDifference { side, other, node: read_probe(reader, function)? });
+    }
+    Ok(RowContest { extreme, kind, groups, node, difference })
 }
 
-/// Whether the operands of a contest are rows of one table's rows, or that table's own.
-fn hang_together(function: &Function, kind: ContestKind, groups: &[ContestGroup]) -> bool {
+fn read_group(
+    reader: &mut ByteReader<'_>,
+    function: &Function,
+    bodies: &Bodies,
+) -> Result<ContestGroup, FormatError> {
+    let table = Table::new(reader.below(function.tables.len())?);
+    let (field, rows) = (Value::new(reader.below(function.values.len())?), reader.flag()?);
+    if !bodies.see(table, field) {
+        return Err(reader.error(format!("the rows of {table} do not see {field}")));
+    }
+    Ok(ContestGroup { table, field, rows })
+}
+
+fn read_probe(reader: &mut ByteReader<'_>, function: &Function) -> Result<Option<usize>, FormatError> {
+    let (is_there, probe) = (reader.flag()?, reader.u32()? as usize);
+    if is_there && probe + 1 >= function.outputs.len() {
+        return Err(reader.error("a contest has a probe that is not there"));
+    }
+    Ok(is_there.then_some(probe))
+}
+
+/// The table whose rows the operands of a contest hang under: all of them are rows of these rows, or are
+/// these rows themselves.
+fn owner(function: &Function, kind: ContestKind, groups: &[ContestGroup]) -> Option<Table> {
     let above = |group: &ContestGroup| {
         if group.rows { function.tables[group.table].parent } else { Some(group.table) }
     };
-    let owner = groups.first().and_then(above);
+    let owner = groups.first().and_then(above)?;
     let is_owner = match kind {
         ContestKind::All(_) => true,
-        ContestKind::Steps(table, _) => owner == Some(table),
+        ContestKind::Steps(table, ..) => owner == table,
     };
-    owner.is_some() && is_owner && groups.iter().all(|group| above(group) == owner)
+    (is_owner && groups.iter().all(|group| above(group) == Some(owner))).then_some(owner)
+}
+
+/// Whether a table is this one or above it.
+fn is_at_or_above(function: &Function, mut below: Option<Table>, table: Table) -> bool {
+    while let Some(at) = below.filter(|&at| at != table) {
+        below = function.tables[at].parent;
+    }
+    below.is_some()
 }
 
 /// Which values the rows of a table see.

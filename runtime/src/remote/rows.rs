@@ -6,7 +6,7 @@ use jbt_lower::{Lowered, Lowering};
 use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
 
-use super::part::RemoteError;
+use super::error::RemoteError;
 use super::shape::ModelShape;
 use crate::boxes::{Box3, Divisible as _};
 use crate::bytes::{ByteReader, ByteWriter, FormatError};

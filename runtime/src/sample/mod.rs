@@ -237,7 +237,7 @@ impl Sampler {
                 progress.add(share)?;
                 Ok::<_, SampleError>(block)
             };
-            let blocks = some.par_iter().map_init(|| BLOCK.pow(3), sample);
+            let blocks = some.par_iter().map_init(usize::default, sample);
             let blocks: Vec<Block> = blocks.collect::<Result<_, _>>()?;
             blocks.into_iter().for_each(&mut *take);
         }

@@ -6,10 +6,10 @@
 //!  +---+=+---+            overlapping   a box is inside of both
 //! ```
 //!
-//! What is said to be apart or to overlap is proven by ranges of both fields over boxes, so it holds for every
-//! value that a kernel gives there. A box is out of question where one of the fields is below the iso-value
-//! all over the box grown by the tolerance: two points of the parts that are nearer to each other than that
-//! would have the point between them in a box that is not.
+//! What is said to be apart or to overlap is proven by ranges of both fields over boxes, so it holds for
+//! every value that a kernel gives there. A box is out of question where one of the fields is below the
+//! iso-value all over the box grown by the tolerance: two points of the parts that are nearer to each other
+//! than that would have the point between them in a box that is not.
 
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::Intersection;

@@ -12,7 +12,20 @@ use crate::{CRATES, sources};
 /// behind it.
 const MODEL: &[&[&str]] = &[
     // Ground: numbers, boxes, messages.
-    &["affine", "angle", "bounds", "diagnostic", "field", "orientation", "power", "query", "report", "word"],
+    &[
+        "affine",
+        "angle",
+        "bounds",
+        "diagnostic",
+        "eigen",
+        "field",
+        "label",
+        "orientation",
+        "power",
+        "query",
+        "report",
+        "word",
+    ],
     &["origin"],
     // Members.
     &["axis", "member"],
@@ -26,7 +39,7 @@ const MODEL: &[&[&str]] = &[
     &["kind"],
     &["written"],
     &["tree", "traverse"],
-    &["parameter"],
+    &["parameter", "path"],
     &["model"],
     // What it means.
     &["check"],

@@ -79,9 +79,11 @@ impl Emitter<'_> {
         let fields: Vec<Value> = answers.iter().map(|answer| answer.field).collect();
         let fields = if weighs { distinct(&mut self.builder, fields) } else { fields };
         let leaves = Leaves { point, fields, numbers };
+        let before = self.builder.set_origin(Origin::CREASE);
         let mut tape = Tape::new(&mut self.builder, weighs);
         let value = form.emit(&mut tape, |operand| leaves.of(operand))[0];
         let tape = tape.finish();
+        self.builder.set_origin(before);
         let lowest = if instance.non_negative { 0.0 } else { -LARGEST_FIELD };
         let vanishes = self.scene.vanishes(instance.node);
         let field = if !vanishes && !form.bounded && self.leaves_open() {
@@ -148,12 +150,15 @@ impl Emitter<'_> {
             }
         }
         if let (Some(sides), Some(point)) = (form.box_numbers(&leaves.numbers), leaves.point) {
+            // The walls of a box have edges.
+            let before = d.set_origin(Origin::CREASE);
             for axis in (0..3).rev() {
                 let above = d.le(sides[axis], point[axis]);
                 let below = d.le(point[axis], sides[axis + 3]);
                 let inside = d.both(above, below);
                 field = d.select(inside, field, zero);
             }
+            d.set_origin(before);
         }
         field
     }

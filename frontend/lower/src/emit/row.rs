@@ -77,6 +77,9 @@ impl Emitter<'_> {
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
         let row = self.columns(place, columns::map(map));
         let point = map.emit(&mut self.builder, outer, &row);
+        if skeleton.creases() {
+            self.builder.set_origin(Origin::leaf(slot, Part::Crease));
+        }
         let mut row = self.columns(place, columns::skeleton(skeleton));
         if let Some(pieces) = skeleton.pieces() {
             row.extend(self.fold_pieces(place, skeleton, pieces, point));

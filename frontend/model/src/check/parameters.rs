@@ -5,11 +5,11 @@ use std::sync::Arc;
 use jbt_ir::limits;
 
 use super::arena::{CheckedNode, Lineage, NodeId, Paths, check_instances};
-use super::work::check_work;
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;
 use super::tree::CheckedTree;
+use super::work::check_work;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::kind::NodeKind;
 use crate::model::Model;

@@ -7,7 +7,6 @@ use super::tree::CheckedTree;
 use crate::combine::{Combinator, Union};
 use crate::diagnostic::Diagnostic;
 use crate::kind::NodeKind;
-use crate::owner::owner;
 use crate::report::{Report, clip};
 use crate::tree::Tree;
 
@@ -50,23 +49,6 @@ impl CheckedTree {
     #[must_use]
     pub fn part(&self, index: usize) -> Self {
         self.joined(&[self.parts()[index].node], Union {})
-    }
-
-    /// The part that decides the field at a point of the world, in f64 by a plain walk: that of the
-    /// [owner](crate::owner::owner). Where parts overlap it is the one with the larger field.
-    ///
-    /// ```
-    /// let text = r#"jbt 1 part "hub" { point { radius 1 } } part "rim" { point { at (3 0 0) radius 1 } }"#;
-    /// let tree = jbt_text::model(text)?.check()?;
-    /// assert_eq!([0.2, 3.1, 9.0].map(|x| tree.part_at([x, 0.0, 0.0])), [Some(0), Some(1), None]);
-    /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
-    /// ```
-    #[must_use]
-    pub fn part_at(&self, point: [f64; 3]) -> Option<usize> {
-        if self.parts().is_empty() {
-            return None;
-        }
-        Some(owner(self, point)?.above.first()?.1 as usize)
     }
 }
 

@@ -13,7 +13,7 @@
 
 use jbt_ir::limits;
 
-use super::arena::CheckedNode;
+use super::arena::{CheckedNode, NodeId};
 use super::tree::node_extent;
 use crate::bounds::Bounds;
 use crate::combine::extent::Extent;
@@ -47,9 +47,7 @@ pub(super) fn check_work(report: &mut Report, nodes: &[CheckedNode], iso: f64) {
             "unfolded, a point of the model would take {work:.0} pieces of curves and parts of formulas; \
              it may take {most}"
         );
-        report.add(|| {
-            Diagnostic::limit(span, message).expected("expected fewer uses, or smaller radii")
-        });
+        report.add(|| Diagnostic::limit(span, message).expected("expected fewer uses, or smaller radii"));
     }
 }
 
@@ -57,7 +55,7 @@ pub(super) fn check_work(report: &mut Report, nodes: &[CheckedNode], iso: f64) {
 fn foreseen(nodes: &[CheckedNode], iso: f64, own: impl Fn(&NodeKind, Bounds) -> f64) -> f64 {
     let mut done: Vec<(Extent, f64)> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let of = |id: &super::NodeId| done[id.0 as usize];
+        let of = |id: &NodeId| done[id.0 as usize];
         let extents: Vec<Extent> = node.children.iter().map(|id| of(id).0).collect();
         let extent = node_extent(&node.kind, &extents, iso);
         // Nothing is evaluated where an operator is 0, and a map changes no part of a box.
@@ -70,7 +68,7 @@ fn foreseen(nodes: &[CheckedNode], iso: f64, own: impl Fn(&NodeKind, Bounds) -> 
             | NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_) => {
-                let part = |id: &super::NodeId| of(id).1 * part_of(of(id).0.support, extent.support);
+                let part = |id: &NodeId| of(id).1 * part_of(of(id).0.support, extent.support);
                 node.children.iter().map(part).sum()
             }
         };

@@ -181,7 +181,7 @@ pub struct TakesApart {
 
 /// How a field follows that of a side.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Growth {
+pub enum SideGrowth {
     /// Where that is larger, it is not smaller.
     Rises,
     /// Where that is larger, it is not larger.
@@ -213,6 +213,8 @@ pub enum OperatorReach {
 pub trait Step: Operator {
     /// What of it selects code.
     type Code: Copy + Eq + Hash + Debug;
+    /// Whether its surface has edges where the surfaces of the sides meet.
+    const CREASES: bool = true;
     /// Names of the numbers that a row keeps for it.
     const COLUMNS: &'static [&'static str] = &[];
 
@@ -238,7 +240,7 @@ pub trait Step: Operator {
     fn rule(code: Self::Code, non_negative: bool) -> Rule;
 
     /// How the field follows either side, in real numbers, if it does in one way everywhere.
-    fn growth(_: Self::Code) -> Option<[Growth; 2]> {
+    fn growth(_: Self::Code) -> Option<[SideGrowth; 2]> {
         None
     }
 

@@ -180,9 +180,10 @@ macro_rules! operators {
 
         impl StepCode {
             /// See [`Step::COLUMNS`].
-            const fn columns(self) -> &'static [&'static str] {
-                match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ }
-            }
+            const fn columns(self) -> &'static [&'static str] { match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ } }
+
+            /// See [`Step::CREASES`].
+            pub const fn creases(self) -> bool { match self { $( Self::$step(_) => <$step as Step>::CREASES, )+ } }
 
             /// See [`Step::rule`].
             fn rule(self, non_negative: bool) -> Rule {
@@ -194,8 +195,8 @@ macro_rules! operators {
                 match self { $( Self::$step(code) => <$step as Step>::takes_apart(code), )+ }
             }
 
-            /// The field of two sides, `plain`, to the bit. Over ranges it is bounded by its values at the ends of
-            /// the sides too, if it follows them in one way.
+            /// The field of two sides, `plain`, to the bit. Over ranges it is bounded by its values at the
+            /// ends of the sides too, if it follows them in one way.
             pub fn bounded<D: Domain>(
                 self,
                 d: &mut D,

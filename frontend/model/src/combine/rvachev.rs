@@ -40,7 +40,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Growth, OperatorReach, PairResult};
+use super::member::{OperatorReach, PairResult, SideGrowth};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use super::set_step::SetFormula;
@@ -170,7 +170,7 @@ impl SetFormula for Rvachev {
         Rule::Never
     }
 
-    fn growth(self) -> Option<[Growth; 2]> {
+    fn growth(self) -> Option<[SideGrowth; 2]> {
         match self.1 {
             // Slopes of R are 1 and something within 1.
             Family::Alpha | Family::Power => Some(self.0.growth()),
@@ -214,6 +214,9 @@ impl SetFormula for Rvachev {
         let relative = d.sub(one, ratio);
         let relative = positive_part(d, relative);
         let field = d.mul(iso, relative);
+        // The sides meet in an edge. Which of them is there is noted by a selection that changes nothing.
+        let left_is_larger = d.lt(b, a);
+        let field = d.select(left_is_larger, field, field);
         let right = match self.0 {
             SetOperation::Union | SetOperation::Intersection => b,
             SetOperation::Difference => {

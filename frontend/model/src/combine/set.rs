@@ -1,6 +1,6 @@
 //! The three operations on sets.
 
-use super::member::Growth;
+use super::member::SideGrowth;
 use crate::field::FieldValue;
 use crate::member::ParameterType;
 
@@ -29,10 +29,10 @@ impl SetOperation {
     }
 
     /// How fields of the operation follow their sides.
-    pub(super) const fn growth(self) -> [Growth; 2] {
+    pub(super) const fn growth(self) -> [SideGrowth; 2] {
         match self {
-            Self::Union | Self::Intersection => [Growth::Rises; 2],
-            Self::Difference => [Growth::Rises, Growth::Falls],
+            Self::Union | Self::Intersection => [SideGrowth::Rises; 2],
+            Self::Difference => [SideGrowth::Rises, SideGrowth::Falls],
         }
     }
 

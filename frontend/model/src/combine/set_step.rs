@@ -5,10 +5,13 @@ use std::hash::Hash;
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Growth, Operator, OperatorReach, PairResult, Step, TakesApart};
+use super::member::{Operator, OperatorReach, PairResult, SideGrowth, Step, TakesApart};
 
 /// The formula of a set operation in a family. It is what of the step selects code.
 pub trait SetFormula: Copy + Eq + Hash + Debug {
+    /// See [`Step::CREASES`].
+    const CREASES: bool = true;
+
     /// Pushes the numbers of a row.
     fn push_columns(self, number: f64, row: &mut Vec<f64>);
 
@@ -28,7 +31,7 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
     fn rule(self, non_negative: bool) -> Rule;
 
     /// See [`Step::growth`].
-    fn growth(self) -> Option<[Growth; 2]>;
+    fn growth(self) -> Option<[SideGrowth; 2]>;
 
     /// See [`Step::rounding`].
     fn rounding<D: Domain>(self, d: &mut D, sizes: [D::Real; 2], row: &[D::Real], iso2: D::Real) -> D::Real;
@@ -65,6 +68,7 @@ pub trait SetStep: Operator {
 impl<T: SetStep> Step for T {
     type Code = T::Formula;
     const COLUMNS: &'static [&'static str] = <T as SetStep>::COLUMNS;
+    const CREASES: bool = <T::Formula as SetFormula>::CREASES;
 
     fn code(self) -> T::Formula {
         self.formula()
@@ -94,7 +98,7 @@ impl<T: SetStep> Step for T {
         formula.rule(non_negative)
     }
 
-    fn growth(formula: T::Formula) -> Option<[Growth; 2]> {
+    fn growth(formula: T::Formula) -> Option<[SideGrowth; 2]> {
         formula.growth()
     }
 

@@ -21,7 +21,7 @@
 use jbt_ir::{Domain, Rule};
 
 use super::extreme::Extreme;
-use super::member::{Growth, OperatorReach, PairResult, TakesApart};
+use super::member::{OperatorReach, PairResult, SideGrowth, TakesApart};
 use super::set::SetOperation;
 use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
@@ -83,6 +83,8 @@ fn corner(is_union: bool, [a, b]: [f64; 2]) -> f64 {
 pub struct Smooth(pub(super) SetOperation);
 
 impl SetFormula for Smooth {
+    const CREASES: bool = false;
+
     fn push_columns(self, width: f64, row: &mut Vec<f64>) {
         row.extend([width, 0.25 / width]);
     }
@@ -142,7 +144,7 @@ impl SetFormula for Smooth {
         }
     }
 
-    fn growth(self) -> Option<[Growth; 2]> {
+    fn growth(self) -> Option<[SideGrowth; 2]> {
         Some(self.0.growth())
     }
 

@@ -44,6 +44,7 @@ member! {
 
 impl SkeletonMember for LMetric {
     const COLUMNS: &'static [&'static str] = &["inv_x", "inv_y", "inv_z", "l", "inv_l"];
+    const CREASES: bool = true;
     const SYMMETRY: Symmetry = Symmetry::None;
 
     fn metric(&self) -> Metric {

@@ -28,6 +28,10 @@ pub trait SkeletonMember: Member {
     /// after the other. All but the first are at least the distance from the skeleton.
     const DIVISORS: i32 = 1;
 
+    /// Whether decisions in its distance may bend its surfaces sharply: edges of a norm's ball, corners that
+    /// point inwards.
+    const CREASES: bool = false;
+
     /// How its distance is measured.
     fn metric(&self) -> Metric {
         Metric::EUCLIDEAN

@@ -60,6 +60,10 @@ macro_rules! skeletons {
             #[must_use]
             pub const fn divisors(self) -> i32 { match self { $( Self::$name => $name::DIVISORS, )+ } }
 
+            /// See [`SkeletonMember::CREASES`].
+            #[must_use]
+            pub const fn creases(self) -> bool { match self { $( Self::$name => $name::CREASES, )+ } }
+
             /// See [`SkeletonMember::SYMMETRY`].
             #[must_use]
             #[inline]

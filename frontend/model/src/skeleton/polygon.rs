@@ -84,6 +84,7 @@ impl Polygon {
 
 impl SkeletonMember for Polygon {
     const COLUMNS: &'static [&'static str] = &[];
+    const CREASES: bool = true;
     const SYMMETRY: Symmetry = Symmetry::None;
     const PIECES: Option<Pieces> =
         Some(Pieces { columns: &["ax", "ay", "ux", "uy", "length", "by", "lean"], local: false });

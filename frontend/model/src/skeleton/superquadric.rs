@@ -43,6 +43,7 @@ member! {
 impl SkeletonMember for Superquadric {
     // The exponents of the norms: first of the slices, then of the profile.
     const COLUMNS: &'static [&'static str] = &["inv_x", "inv_y", "inv_z", "l2", "inv_l2", "l1", "inv_l1"];
+    const CREASES: bool = true;
     const SYMMETRY: Symmetry = Symmetry::None;
 
     fn metric(&self) -> Metric {

@@ -9,10 +9,10 @@ use crate::written::Written;
 
 /// Any tree.
 #[derive(Clone, Copy)]
-pub(super) struct PlainNodes<'a>(PhantomData<&'a Tree>);
+pub(crate) struct PlainNodes<'a>(PhantomData<&'a Tree>);
 
 impl PlainNodes<'_> {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self(PhantomData)
     }
 }

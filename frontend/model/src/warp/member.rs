@@ -13,6 +13,9 @@ pub trait WarpMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
 
+    /// Whether the map has creases, which bend the child sharply.
+    const CREASES: bool = false;
+
     /// The point of the child's space for the point `p` of the warped space, in f64.
     fn inverse(&self, p: DVec3) -> DVec3;
 

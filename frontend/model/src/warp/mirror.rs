@@ -23,6 +23,7 @@ member! {
 
 impl WarpMember for Mirror {
     const COLUMNS: &'static [&'static str] = &[];
+    const CREASES: bool = true;
 
     fn inverse(&self, p: DVec3) -> DVec3 {
         let axis = self.axis.index();

@@ -72,6 +72,12 @@ macro_rules! warps {
                 match self { $( Self::$name(_) => $name::FIELDS, )+ }
             }
 
+            /// See [`WarpMember::CREASES`].
+            #[must_use]
+            pub const fn creases(self) -> bool {
+                match self { $( Self::$name(_) => $name::CREASES, )+ }
+            }
+
             /// The names of the columns of a row.
             #[must_use]
             pub const fn columns(self) -> &'static [&'static str] {
@@ -206,6 +212,15 @@ pub enum WarpCode {
 }
 
 impl WarpCode {
+    /// Whether the map may have creases, which bend the child sharply.
+    #[must_use]
+    pub fn creases(&self) -> bool {
+        match self {
+            Self::Member(kind) => kind.creases(),
+            Self::Formula(_) => true,
+        }
+    }
+
     /// The names of the columns of a row.
     #[must_use]
     pub fn columns(&self) -> Vec<&'static str> {

@@ -54,6 +54,7 @@ impl Repeat {
 impl WarpMember for Repeat {
     const COLUMNS: &'static [&'static str] =
         &["spacing", "inverse_spacing", "half_spacing", "first", "last", "lower_wall", "upper_wall"];
+    const CREASES: bool = true;
 
     fn inverse(&self, p: DVec3) -> DVec3 {
         let (axis, [first, last]) = (self.axis.index(), self.ends());

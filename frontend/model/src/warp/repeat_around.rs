@@ -38,6 +38,7 @@ impl RepeatAround {
 
 impl WarpMember for RepeatAround {
     const COLUMNS: &'static [&'static str] = &["sectors", "sector"];
+    const CREASES: bool = true;
 
     fn inverse(&self, p: DVec3) -> DVec3 {
         let [_, u, v] = self.axis.order();

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use jbt_ir::limits::MAX_EXPANSION_DEPTH;
 
 use super::Value;
-use super::call::{CallFrame, Key, Remembered};
-use super::definition::Definition;
+use super::call::{CallFrame, CallKey, Remembered};
+use super::definition::ProgramDefinition;
 use super::repeat::Loop;
-use crate::block::{Begun, Frame, NodeStack};
+use crate::block::{Begun, NodeFrame, NodeStack};
 use crate::lex::{Place, Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Call;
+use jbt_model::label::LabelCall;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
 
@@ -21,9 +21,9 @@ use jbt_model::tree::Tree;
 pub(crate) enum BodyKind<'a> {
     /// A definition that is called; where to go on behind it, and what it is known by.
     Call {
-        definition: Rc<Definition<'a>>,
+        definition: Rc<ProgramDefinition<'a>>,
         back: Place<'a>,
-        key: Option<Key>,
+        key: Option<CallKey>,
     },
     Loop(Box<Loop<'a>>),
     /// The block of a condition that holds.
@@ -41,7 +41,7 @@ pub(crate) struct BodyFrame<'a> {
     locals: usize,
     visible: usize,
     /// The calls and loops around it.
-    pub(super) around: Option<Arc<Call>>,
+    pub(super) around: Option<Arc<LabelCall>>,
     /// How many errors there were before it.
     pub(super) errors: usize,
 }
@@ -127,7 +127,7 @@ impl<'a> Parser<'a> {
             self.program.bind(name, value);
         } else {
             let frame = LocalFrame { name, span, first: stack.finished.len(), stays: false };
-            stack.frames.push(Frame::Local(Box::new(frame)));
+            stack.frames.push(NodeFrame::Local(Box::new(frame)));
         }
     }
 
@@ -141,7 +141,7 @@ impl<'a> Parser<'a> {
     pub(crate) fn settle(&mut self, stack: &mut NodeStack<'a>) {
         loop {
             match stack.frames.last() {
-                Some(Frame::Local(frame)) => {
+                Some(NodeFrame::Local(frame)) => {
                     let (first, name, span, stays) = (frame.first, frame.name, frame.span, frame.stays);
                     stack.frames.pop();
                     let tree = self.only(stack, first, span, &format!("`{}`", clip(name)));
@@ -154,16 +154,16 @@ impl<'a> Parser<'a> {
                         return;
                     }
                 }
-                Some(Frame::Call(frame)) => {
+                Some(NodeFrame::Call(frame)) => {
                     let (first, span) = (frame.first, frame.span);
                     let tree = self.only(stack, first, span, "this argument");
-                    let Some(Frame::Call(mut frame)) = stack.frames.pop() else { return };
+                    let Some(NodeFrame::Call(mut frame)) = stack.frames.pop() else { return };
                     frame.give(Value::Tree(tree));
                     if !self.advance(frame, stack) {
                         return;
                     }
                 }
-                Some(Frame::Block(_) | Frame::Body(_)) | None => return,
+                Some(NodeFrame::Block(_) | NodeFrame::Body(_)) | None => return,
             }
         }
     }
@@ -189,14 +189,14 @@ impl<'a> Parser<'a> {
         match self.arguments(&mut frame) {
             super::call::Next::Node => {
                 frame.first = stack.finished.len();
-                stack.frames.push(Frame::Call(frame));
+                stack.frames.push(NodeFrame::Call(frame));
                 false
             }
             super::call::Next::Done => match self.enter(*frame) {
                 Begun::Body(mut body) => {
                     body.first = stack.finished.len();
                     stack.bodies += 1;
-                    stack.frames.push(Frame::Body(body));
+                    stack.frames.push(NodeFrame::Body(body));
                     false
                 }
                 Begun::Many(trees) => {

@@ -8,19 +8,19 @@ use std::sync::Arc;
 
 use super::Value;
 use super::body::BodyKind;
-use super::definition::Definition;
+use super::definition::ProgramDefinition;
 use crate::block::Begun;
 use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Call;
+use jbt_model::label::LabelCall;
 use jbt_model::number::{Number, Step};
 use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
 
 /// A call whose arguments are being read.
 pub(crate) struct CallFrame<'a> {
-    definition: Rc<Definition<'a>>,
+    definition: Rc<ProgramDefinition<'a>>,
     given: Vec<Option<Value>>,
     /// The argument that comes next.
     slot: usize,
@@ -52,7 +52,7 @@ pub(super) enum Next {
 }
 
 /// What an expansion is known by: the number of the definition, and its arguments as words.
-pub(super) type Key = (usize, Vec<u64>);
+pub(super) type CallKey = (usize, Vec<u64>);
 
 /// The nodes of an expansion.
 pub(super) struct Remembered(pub(super) Arc<[Tree]>);
@@ -210,7 +210,7 @@ impl<'a> Parser<'a> {
         let body = BodyKind::Call { definition: Rc::clone(&definition), back, key };
         let begun = self.open_body(open, span, body);
         if matches!(begun, Begun::Body(_)) {
-            let call = Call { name: definition.name.into(), turn: None, span, above: around };
+            let call = LabelCall { name: definition.name.into(), turn: None, span, above: around };
             self.program.calls = Some(Arc::new(call));
             self.program.visible = self.program.locals.len();
             for ((name, _), value) in definition.arguments.iter().zip(values) {
@@ -223,7 +223,7 @@ impl<'a> Parser<'a> {
 }
 
 /// What an expansion is known by; nothing if its arguments are long.
-fn key(definition: usize, values: &[Value]) -> Option<Key> {
+fn key(definition: usize, values: &[Value]) -> Option<CallKey> {
     const LONGEST: usize = 256;
     let mut words = Vec::new();
     let mut stack: Vec<&Value> = values.iter().rev().collect();

@@ -18,7 +18,7 @@ const DEFINE: &str = "def";
 pub(super) const INCLUDE: &str = "include";
 
 /// A definition: what a call of it is expanded to.
-pub(crate) struct Definition<'a> {
+pub(crate) struct ProgramDefinition<'a> {
     pub(super) name: &'a str,
     /// Where that stands.
     pub(super) span: Span,
@@ -83,7 +83,7 @@ impl<'a> Parser<'a> {
         } else {
             let number = self.program.definitions.len();
             let (open, is_wrong) = (open.start as u32, Cell::new(false));
-            let made = Definition { name, span, number, arguments, body, open, length, is_wrong };
+            let made = ProgramDefinition { name, span, number, arguments, body, open, length, is_wrong };
             self.program.definitions.insert(name, Rc::new(made));
         }
     }

@@ -10,7 +10,7 @@ use crate::lex::{Place, Token, TokenKind};
 use crate::state::Parser;
 use crate::texts::TextFile;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Call;
+use jbt_model::label::LabelCall;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
 use jbt_model::word::normalized;
@@ -125,7 +125,8 @@ impl<'a> Parser<'a> {
         let place = self.lexer.place();
         let visible = std::mem::replace(&mut self.program.visible, self.program.locals.len());
         let around = self.program.calls.take();
-        let call = Call { name: file.file.path.as_str().into(), turn: None, span, above: around.clone() };
+        let call =
+            LabelCall { name: file.file.path.as_str().into(), turn: None, span, above: around.clone() };
         self.program.calls = Some(Arc::new(call));
         let (root, muted) = (self.root.take(), self.muted);
         let (ended, scope) = (self.ended, self.scope.take());

@@ -23,7 +23,7 @@ use super::files::FileReader;
 use super::state::{Options, Parser};
 use super::texts::Texts;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Call;
+use jbt_model::label::LabelCall;
 use jbt_model::number::Number;
 use jbt_model::parameter::Fixture;
 use jbt_model::tree::Tree;
@@ -38,7 +38,7 @@ mod value;
 pub(super) use body::{BodyFrame, BodyKind, LocalFrame};
 pub(super) use call::CallFrame;
 use call::Remembered;
-use definition::Definition;
+use definition::ProgramDefinition;
 use include::Included;
 pub(super) use value::COUNT;
 
@@ -86,9 +86,9 @@ pub(super) struct Program<'a> {
     included: HashMap<String, Included>,
     /// Those that are being read, each in the one before it: identities and paths.
     open: Vec<(String, String)>,
-    definitions: HashMap<&'a str, Rc<Definition<'a>>>,
+    definitions: HashMap<&'a str, Rc<ProgramDefinition<'a>>>,
     /// What has been expanded for which arguments.
-    remembered: HashMap<call::Key, Remembered>,
+    remembered: HashMap<call::CallKey, Remembered>,
     /// Values that have a name everywhere below.
     values: HashMap<&'a str, Value>,
     /// Arguments and variables, those of the innermost body last.
@@ -96,7 +96,7 @@ pub(super) struct Program<'a> {
     /// The first of them that can be seen: a definition does not see those of its callers.
     visible: usize,
     /// The calls and loops around what is read.
-    pub(super) calls: Option<Arc<Call>>,
+    pub(super) calls: Option<Arc<LabelCall>>,
     /// How many bodies are open.
     depth: usize,
     /// Where blocks end that have been looked at, by where they begin.

@@ -15,7 +15,7 @@ use crate::expression::{ExpressionPlace, ParsedOperand};
 use crate::lex::{COMPARISON, Place, RANGE, Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::{Call, CallTurn};
+use jbt_model::label::{CallTurn, LabelCall};
 
 /// The words of loops and conditions.
 pub(super) const FOR: &str = "for";
@@ -211,7 +211,7 @@ impl<'a> Parser<'a> {
             Turns::Elements(elements) => (elements[place].clone(), CallTurn::Element(place)),
         };
         made.begun += 1;
-        let call = Call {
+        let call = LabelCall {
             name: made.variable.into(),
             turn: Some(turn),
             span: made.span,

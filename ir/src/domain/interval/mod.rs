@@ -60,7 +60,7 @@ pub(crate) use enclosure::{BoundParts, Enclosure, Ground};
 pub use value::{Certainty, Interval, Known, Range};
 
 use facts::Facts;
-use value::{of_both, of_one};
+use value::{Side, of_both, of_one};
 
 use crate::op::{Domain, Op};
 
@@ -113,11 +113,11 @@ impl<D: Domain> Domain for Interval<D> {
     }
 
     fn min(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
-        self.extreme(order::Side::Lowest, a, b)
+        self.extreme(Side::Lowest, a, b)
     }
 
     fn max(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
-        self.extreme(order::Side::Highest, a, b)
+        self.extreme(Side::Highest, a, b)
     }
 
     fn lt(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {

@@ -16,17 +16,8 @@ use crate::op::{Domain, Op};
 
 use super::facts::{Facts, Sign};
 use super::value::{
-    Bounded, Bounding, Certainty, Interval, MOST_BOUNDING, Range, RangeComplement, of_both, same,
+    Bounded, Bounding, Certainty, Interval, MOST_BOUNDING, Range, RangeComplement, Side, of_both, same,
 };
-
-/// One side of two numbers.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Side {
-    /// The smaller one.
-    Lowest,
-    /// The larger one.
-    Highest,
-}
 
 impl Side {
     fn of<D: Domain>(self, d: &mut D, a: D::Real, b: D::Real) -> D::Real {

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use super::facts::Facts;
-use super::order::Side;
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
@@ -20,6 +19,15 @@ pub struct Range<D: Domain> {
     pub(super) power: Option<RangePower<D>>,
     /// If it is the complement of another value, or an extreme of values.
     pub(super) bounded: Bounded<D>,
+}
+
+/// One side of two numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Side {
+    /// The smaller one.
+    Lowest,
+    /// The larger one.
+    Highest,
 }
 
 /// What other values bound a value.

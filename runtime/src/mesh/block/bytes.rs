@@ -3,7 +3,7 @@
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES};
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
 
-use super::super::indexed::{Attribute, Mesh};
+use super::super::indexed::{Attribute, Creases, Mesh};
 use super::super::report::Sides;
 use super::{MeshBlock, VertexName};
 use crate::bytes::{ByteReader, ByteWriter, FormatError};
@@ -16,7 +16,7 @@ impl MeshBlock {
     /// The block as bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Self { place, mesh, below, seams, is_open, cut_sides } = self;
+        let Self { place, mesh, below, corners, seams, is_open, cut_sides } = self;
         let mut writer = ByteWriter::new(WORD, VERSION);
         place.iter().for_each(|&index| writer.u32(index));
         mesh.origin.into_iter().for_each(|x| writer.f64(x));
@@ -37,6 +37,11 @@ impl MeshBlock {
         writer.u32s(below.iter().map(name).collect::<Vec<_>>().as_flattened());
         writer.u32s(seams.iter().map(|(it, _)| name(it)).collect::<Vec<_>>().as_flattened());
         writer.u32s(&seams.iter().map(|(_, vertex)| *vertex).collect::<Vec<_>>());
+        writer.u32s(&mesh.creases.vertices);
+        writer.f32s(mesh.creases.normals.as_flattened());
+        writer.count(mesh.creases.attributes.len());
+        mesh.creases.attributes.iter().for_each(|values| writer.f32s(values));
+        writer.u32s(corners.as_flattened());
         writer.into_bytes()
     }
 
@@ -64,8 +69,16 @@ impl MeshBlock {
         }
         let (triangles, below, seams) = (reader.u32s()?, reader.u32s()?, reader.u32s()?);
         let vertices = reader.u32s()?;
+        let (mut creases, normals_of_sides) =
+            (Creases { vertices: reader.u32s()?, ..Creases::default() }, reader.f32s()?);
+        for _ in 0..reader.count(4)?.min(MAX_ATTRIBUTES + 1) {
+            creases.attributes.push(reader.f32s()?);
+        }
+        creases.normals = normals_of_sides.as_chunks().0.to_vec();
+        let corners = reader.u32s()?;
         let name = |&[x, y, z, sheet]: &[u32; 4]| VertexName { cell: [x, y, z], sheet };
-        let whole = positions.len() % 3 == 0 && normals.len() % 3 == 0 && triangles.len() % 3 == 0;
+        let whole = normals_of_sides.len() % 3 == 0 && corners.len() % 2 == 0;
+        let whole = whole && positions.len() % 3 == 0 && normals.len() % 3 == 0 && triangles.len() % 3 == 0;
         if !whole || below.len() % 4 != 0 || seams.len() != 4 * vertices.len() {
             return Err(reader.error("lists of vertices, triangles or names end in the middle of one"));
         }
@@ -78,7 +91,10 @@ impl MeshBlock {
                 normals: normals.as_chunks().0.to_vec(),
                 attributes,
                 triangles: triangles.as_chunks().0.to_vec(),
+                creases,
+                parts: Vec::new(),
             },
+            corners: corners.as_chunks().0.to_vec(),
             below: below.as_chunks().0.iter().map(name).collect(),
             seams: seams.as_chunks().0.iter().map(name).zip(vertices).collect(),
             is_open,

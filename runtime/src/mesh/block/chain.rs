@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::super::brick::Bricks;
 use super::super::cell::default_sheets;
 use super::super::crossing::{UnflippedCells, below};
-use super::{cell_of, is_in};
+use super::cells::{cell_of, is_in};
 
 /// Whether no chain leads from the cells near a block to beyond the known ones.
 pub(super) fn is_complete(

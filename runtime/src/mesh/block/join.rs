@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::super::indexed::{Attribute, Mesh};
+use super::super::indexed::{Attribute, Creases, Mesh};
 use super::{MeshBlock, VertexName};
 use crate::error::{Classified, ErrorKind};
 use crate::morton::morton;
@@ -70,6 +70,21 @@ impl MeshBlock {
         if attributes.iter().any(|one| count.checked_mul(one.width) != Some(one.values.len())) {
             return broken("it needs values of attributes for each vertex");
         }
+        let Creases { vertices, normals, attributes: values, corners } = &self.mesh.creases;
+        let sides = vertices.len();
+        if !vertices.is_sorted() || vertices.last().is_some_and(|&vertex| vertex as usize >= count) {
+            return broken("an edge has a vertex that is not there");
+        }
+        let width = |n: usize| attributes.get(n).map_or(0, |one| one.width);
+        let fits = |(n, plane): (usize, &Vec<f32>)| sides.checked_mul(width(n)) == Some(plane.len());
+        let fit = sides == 0 && values.iter().all(Vec::is_empty) || values.len() == attributes.len();
+        if normals.len() != sides || !fit || !values.iter().enumerate().all(fits) {
+            return broken("it needs a normal and values of attributes for each side of an edge");
+        }
+        let last = self.corners.last().map_or(0, |[corner, _]| *corner as usize / 3);
+        if !corners.is_empty() || !self.corners.is_sorted() || last > triangles.len().saturating_sub(1) {
+            return broken("a corner is in a triangle that is not there");
+        }
         let all = count + self.below.len();
         if triangles.iter().flatten().any(|&vertex| vertex as usize >= all) {
             return broken("a triangle has a vertex that is not there");
@@ -123,9 +138,31 @@ pub fn join_blocks(blocks: &[MeshBlock]) -> Result<Mesh, BlockError> {
         let number = |vertex: u32| {
             if vertex < count { first + vertex } else { below[(vertex - count) as usize] }
         };
+        let triangles = mesh.triangles.len();
         mesh.triangles.extend(block.mesh.triangles.iter().map(|triangle| triangle.map(number)));
+        crease(&mut mesh, block, (first, triangles))?;
     }
     Ok(mesh)
+}
+
+/// Adds the creases of a block whose vertices and triangles come behind so many. The sides of all vertices that
+/// it has are there by then.
+fn crease(mesh: &mut Mesh, block: &MeshBlock, before: (u32, usize)) -> Result<(), BlockError> {
+    let Mesh { creases, triangles, .. } = mesh;
+    creases.append(block.mesh.creases.clone(), before);
+    for &[corner, side] in &block.corners {
+        let corner = 3 * before.1 as u32 + corner;
+        let vertex = triangles[corner as usize / 3][corner as usize % 3];
+        let place = creases.vertices.partition_point(|&other| other < vertex) as u64 + u64::from(side);
+        if creases.vertices.get(place as usize) != Some(&vertex) {
+            return Err(BlockError::Broken {
+                place: block.place,
+                problem: "a corner has a side that is not there",
+            });
+        }
+        creases.corners.push([corner, place as u32]);
+    }
+    Ok(())
 }
 
 /// An empty mesh like another one, with room.
@@ -142,6 +179,8 @@ fn begun(model: &Mesh, vertices: usize, blocks: &[&MeshBlock]) -> Mesh {
         normals: Vec::with_capacity(vertices),
         attributes: model.attributes.iter().map(attribute).collect(),
         triangles: Vec::with_capacity(blocks.iter().map(|block| block.mesh.triangles.len()).sum()),
+        creases: Default::default(),
+        parts: Vec::new(),
     }
 }
 

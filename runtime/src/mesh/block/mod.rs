@@ -17,6 +17,7 @@
 //! | normals that triangles decide | one above |
 
 mod bytes;
+mod cells;
 mod chain;
 mod join;
 mod lattice_block;
@@ -28,8 +29,8 @@ use std::collections::BTreeMap;
 
 use jbt_ir::limits::MAX_BRICKS;
 
-use super::brick::{Bricks, place as number_place};
-use super::crossing::{self, CrossedCell, Crossings, UnflippedCells};
+use super::brick::Bricks;
+use super::crossing::{self, Crossings, UnflippedCells};
 use super::divide::{self, BrickDivision};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
@@ -38,10 +39,14 @@ use super::lattice::Lattice;
 use super::options::Options;
 use super::report::Sides;
 use super::scope::DivisionScope;
+use super::surface::SideCorner;
 use super::vertex::batch::VertexSource;
+use super::vertex::side::SharpVertex;
 use super::{sample, surface, vertex};
 use crate::job::Hook;
 use crate::progress::{EACH, Progress};
+
+use cells::{cell_of, is_in};
 
 /// A vertex by its cell in the whole lattice, and its place among the vertices of that cell.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -62,6 +67,10 @@ pub struct MeshBlock {
     pub mesh: Mesh,
     /// Vertices of other blocks that triangles have.
     pub below: Vec<VertexName>,
+    /// Corners of triangles that show sides of edges, ascending: three times the triangle plus the corner, and
+    /// the number of the side among those of its vertex. The [creases](Mesh::creases) of the block's mesh have
+    /// the sides of its vertices and no corners.
+    pub corners: Vec<[u32; 2]>,
     /// Vertices that triangles of other blocks may have: those of the last cells along some axis, ascending by
     /// their index.
     pub seams: Vec<(VertexName, u32)>,
@@ -137,6 +146,8 @@ pub(crate) fn extract<F: Field>(
         VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
     mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
+    let positions = &mesh.positions;
+    let corners = surface::crease(&bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =
@@ -145,21 +156,11 @@ pub(crate) fn extract<F: Field>(
     progress.finish()?;
     let mut cut_sides = crossings.cut;
     cut_sides.add(boxes.cut);
-    let mut made = cut_out(&bricks, &crossings, &mesh, range);
+    let mut made = cut_out(&bricks, &crossings, &mesh, range.clone());
+    crease(&mut made, &done.sharp, &corners, (vertices, 2 * crossings.quads[range.start]));
     (made.place, made.cut_sides, made.is_open) = (block.place(), cut_sides, crossings.is_open);
     made.seams = seams(&bricks, &crossings, own);
     Ok(made)
-}
-
-/// Whether a cell is in a box of cells.
-fn is_in(cell: [usize; 3], [low, end]: [[usize; 3]; 2]) -> bool {
-    (0..3).all(|axis| (low[axis]..end[axis]).contains(&cell[axis]))
-}
-
-/// Where a cell of a brick is in the lattice.
-fn cell_of(bricks: &Bricks, brick: usize, cell: &CrossedCell) -> [usize; 3] {
-    let (origin, place) = (bricks.origin(brick), number_place(cell.number));
-    [0, 1, 2].map(|axis| origin[axis] + place[axis])
 }
 
 /// The bricks of a block, which follow one another.
@@ -230,6 +231,23 @@ fn cut_out(bricks: &Bricks, crossings: &Crossings, mesh: &Mesh, range: std::ops:
         ..Mesh::default()
     };
     MeshBlock { mesh, below, ..MeshBlock::default() }
+}
+
+/// Gives a block the sides of its vertices, and the corners of its triangles that show some; `vertices` are
+/// its own, and it has so many triangles before it.
+fn crease(
+    made: &mut MeshBlock,
+    sharp: &[SharpVertex],
+    corners: &[SideCorner],
+    (vertices, triangles): (std::ops::Range<usize>, usize),
+) {
+    let widths: Vec<usize> = made.mesh.attributes.iter().map(|attribute| attribute.width).collect();
+    for one in sharp.iter().filter(|one| vertices.contains(&(one.vertex as usize))) {
+        made.mesh.creases.push(one.vertex - vertices.start as u32, one, &widths);
+    }
+    let own = 3 * triangles..3 * (triangles + made.mesh.triangles.len());
+    let of_block = corners.iter().filter(|of| own.contains(&(of.corner as usize)));
+    made.corners = of_block.map(|of| [of.corner - own.start as u32, of.side as u32]).collect();
 }
 
 /// The name of a vertex.

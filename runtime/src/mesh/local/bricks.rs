@@ -9,6 +9,7 @@ use crate::mesh::brick::{Bricks, NONE, direction};
 use crate::mesh::crossing::CrossedCell;
 use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
+use crate::mesh::vertex::side::SharpVertex;
 use crate::morton::morton;
 use crate::touched::Touched;
 
@@ -29,6 +30,20 @@ pub(super) struct KeptBrick {
     /// Vertices whose normals are compared with their triangles, counted from the first one, and their
     /// normals before that.
     pub(super) doubtful: Vec<(u32, [f32; 3])>,
+    /// Vertices on edges and corners of the surface, counted from the first one.
+    pub(super) sharp: Vec<SharpVertex>,
+    /// Corners of its triangles that show sides of such vertices.
+    pub(super) corners: Vec<BrickCorner>,
+}
+
+/// A corner of a triangle of a brick that shows a side.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct BrickCorner {
+    /// Three times the triangle, counted from the brick's first one, plus the corner.
+    pub(super) corner: u32,
+    /// The brick of the vertex, and the vertex, by its place among those on edges.
+    pub(super) of: (BrickPlace, usize),
+    pub(super) side: usize,
 }
 
 /// A mesh by bricks.

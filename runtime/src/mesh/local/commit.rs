@@ -76,10 +76,11 @@ impl BrickMesh {
 
     /// Takes the renewal apart; removes the bricks that are no more.
     fn new_bricks(&mut self, renewal: Renewal, commit: &mut Commit) -> (Vec<NewBrick>, Mesh) {
-        let Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, touched } = renewal;
+        let Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, sharp, touched } = renewal;
         let shift = Self::shift(&lattice, self.edge);
         let from_anchor = |place: [u32; 3]| [0, 1, 2].map(|axis| place[axis] as i32 + shift[axis]);
         let (mut new, mut doubtful) = (Vec::with_capacity(bricks.len()), &doubtful[..]);
+        let mut sharp = sharp.into_iter().peekable();
         for (brick, suspects) in suspects.into_iter().enumerate() {
             let vertices = crossings.vertices[brick]..crossings.vertices[brick + 1];
             let count = doubtful.partition_point(|&vertex| (vertex as usize) < vertices.end);
@@ -87,7 +88,14 @@ impl BrickMesh {
             doubtful = rest;
             let first_normal =
                 |&vertex: &u32| (vertex - vertices.start as u32, mesh.normals[vertex as usize]);
+            let mut sharp_here = Vec::new();
+            while let Some(mut one) = sharp.next_if(|one| (one.vertex as usize) < vertices.end) {
+                one.vertex -= vertices.start as u32;
+                sharp_here.push(one);
+            }
             let kept = KeptBrick {
+                sharp: sharp_here,
+                corners: Vec::new(),
                 cells: crossings.of(brick).to_vec(),
                 suspects,
                 quads: crossings.quads[brick + 1] - crossings.quads[brick],
@@ -151,6 +159,7 @@ impl BrickMesh {
         let mut change = BrickChange::ALL;
         if let Some(old) = &old {
             kept.triangles = old.triangles;
+            kept.corners.clone_from(&old.corners);
             let before = self.buffers.normals[slot.range()].to_vec();
             if stays {
                 let same = |a: &[[f32; 3]], b: &[[f32; 3]]| same_bits(a.as_flattened(), b.as_flattened());
@@ -169,8 +178,9 @@ impl BrickMesh {
                 commit.normals.push((place, before));
             }
         }
-        let is_shape_kept =
-            stays && !change.positions && old.as_ref().is_some_and(|old| old.cells == kept.cells);
+        let is_shape_kept = stays
+            && !change.positions
+            && old.as_ref().is_some_and(|old| old.cells == kept.cells && old.sharp == kept.sharp);
         if !is_shape_kept {
             commit.moved.push(place);
         }
@@ -195,9 +205,10 @@ impl BrickMesh {
     /// Makes triangles anew, and the normals that they decide.
     fn join(&mut self, join: &Join, commit: &mut Commit) {
         let added: FxHashSet<BrickPlace> = commit.changes.added.iter().copied().collect();
-        for (place, triangles) in self.triangles(join) {
+        for (place, triangles, corners) in self.triangles(join) {
             let Some(brick) = self.bricks.get_mut(&place) else { continue };
             let old = brick.triangles;
+            brick.corners = corners;
             if self.buffers.triangles[old.range()] == triangles[..] {
                 continue;
             }

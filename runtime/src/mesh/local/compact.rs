@@ -1,5 +1,7 @@
 //! The kept bricks as one mesh without gaps.
 
+use rustc_hash::FxHashMap;
+
 use super::bricks::{BrickMesh, BrickPlace};
 use crate::mesh::indexed::{Attribute, Mesh};
 
@@ -31,7 +33,21 @@ impl BrickMesh {
                 to.values.extend_from_slice(&from.values[vertices.start * to.width..vertices.end * to.width]);
             }
         }
+        let widths: Vec<usize> = mesh.attributes.iter().map(|attribute| attribute.width).collect();
+        let mut sides = FxHashMap::default();
         for (_, place) in &bricks {
+            let brick = &self.bricks[place];
+            for (number, sharp) in brick.sharp.iter().enumerate() {
+                sides.insert((*place, number), mesh.creases.vertices.len());
+                let vertex = names[brick.vertices.start + sharp.vertex as usize];
+                mesh.creases.push(vertex, sharp, &widths);
+            }
+        }
+        for (_, place) in &bricks {
+            let first = 3 * mesh.triangles.len() as u32;
+            let corners = self.bricks[place].corners.iter();
+            let shown = corners.map(|one| [first + one.corner, (sides[&one.of] + one.side) as u32]);
+            mesh.creases.corners.extend(shown);
             let triangles = &self.buffers.triangles[self.bricks[place].triangles.range()];
             mesh.triangles
                 .extend(triangles.iter().map(|triangle| triangle.map(|vertex| names[vertex as usize])));

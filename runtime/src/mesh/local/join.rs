@@ -2,11 +2,12 @@
 
 use rustc_hash::FxHashSet;
 
-use super::bricks::{BrickMesh, BrickPlace, KeptBrick, linked, octet};
+use super::bricks::{BrickCorner, BrickMesh, BrickPlace, KeptBrick, linked, octet};
 use crate::mesh::brick::place as number_place;
 use crate::mesh::crossing::Crossings;
 use crate::mesh::report::Sides;
 use crate::mesh::surface;
+use crate::mesh::vertex::side::SharpVertex;
 
 /// Bricks that get triangles, and those around them whose vertices these have.
 pub(super) struct Join {
@@ -33,8 +34,8 @@ impl KeptBrick {
 }
 
 impl BrickMesh {
-    /// The triangles of some bricks, as indices of the buffers.
-    pub(super) fn triangles(&self, join: &Join) -> Vec<(BrickPlace, Vec<[u32; 3]>)> {
+    /// The triangles of some bricks, as indices of the buffers, and the corners that show sides of vertices.
+    pub(super) fn triangles(&self, join: &Join) -> Vec<(BrickPlace, Vec<[u32; 3]>, Vec<BrickCorner>)> {
         if join.own.is_empty() {
             return Vec::new();
         }
@@ -49,8 +50,14 @@ impl BrickMesh {
             is_open: false,
         };
         let (mut positions, mut names, mut quads) = (Vec::new(), Vec::new(), 0);
+        let (mut sharp, mut homes) = (Vec::new(), Vec::new());
         for (_, place) in &join.bricks {
             let brick = &self.bricks[place];
+            let first = positions.len() as u32;
+            sharp.extend(
+                brick.sharp.iter().map(|one| SharpVertex { vertex: first + one.vertex, ..one.clone() }),
+            );
+            homes.extend((0..brick.sharp.len()).map(|number| (*place, number)));
             crossings.cells.extend_from_slice(&brick.cells);
             crossings.starts.push(crossings.cells.len());
             positions.extend_from_slice(&self.buffers.positions[brick.vertices.range()]);
@@ -61,10 +68,20 @@ impl BrickMesh {
         }
         let places = join.bricks.iter().map(|&(place, _)| place).collect();
         let bricks = linked(self.edge, self.lattice.axes(), places);
-        let triangles = surface::triangles(&bricks, &crossings, &positions);
+        let mut triangles = surface::triangles(&bricks, &crossings, &positions);
+        let corners = surface::crease(&bricks, &crossings, &sharp, &positions, &mut triangles);
         let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
             let mine = &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]];
-            (place, mine.iter().map(|triangle| triangle.map(|vertex| names[vertex as usize])).collect())
+            let first = 6 * crossings.quads[brick] as u32;
+            let end = 6 * crossings.quads[brick + 1] as u32;
+            let shown = corners.iter().filter(|one| (first..end).contains(&one.corner));
+            let shown = shown.map(|one| BrickCorner {
+                corner: one.corner - first,
+                of: homes[one.sharp],
+                side: one.side,
+            });
+            let mine = mine.iter().map(|triangle| triangle.map(|vertex| names[vertex as usize])).collect();
+            (place, mine, shown.collect())
         };
         let own = join.bricks.iter().enumerate().filter(|(_, (_, place))| join.own.contains(place));
         own.map(of_brick).collect()

@@ -17,6 +17,7 @@ use crate::mesh::sample;
 use crate::mesh::scope::DivisionScope;
 use crate::mesh::vertex;
 use crate::mesh::vertex::batch::VertexSource;
+use crate::mesh::vertex::side::SharpVertex;
 use crate::progress::{EACH, Progress};
 use crate::touched::Touched;
 
@@ -31,6 +32,8 @@ pub(crate) struct Renewal {
     pub(super) mesh: Mesh,
     /// Of the mesh, ascending.
     pub(super) doubtful: Vec<u32>,
+    /// Its vertices on edges and corners of the surface, ascending.
+    pub(super) sharp: Vec<SharpVertex>,
     /// The bricks that may be made anew, in units of bricks from the first one; `None` for all.
     pub(super) touched: Option<Touched<3>>,
 }
@@ -83,8 +86,8 @@ impl BrickMesh {
             };
             let (mesh, done) = vertex::finish(&source, &progress)?;
             progress.finish()?;
-            let (lattice, doubtful) = (lattice.clone(), done.doubtful);
-            return Ok(Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, touched });
+            let (lattice, doubtful, sharp) = (lattice.clone(), done.doubtful, done.sharp);
+            return Ok(Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, sharp, touched });
         }
     }
 

@@ -7,6 +7,7 @@ use super::super::options::Options;
 use super::super::pull::{LANES, VertexLanes};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
+use super::side::SharpVertex;
 use crate::boxes::Box3;
 
 /// Counts of the work at vertices.
@@ -22,17 +23,21 @@ pub(in super::super) struct Done {
     pub(in super::super) jump_vertices: u64,
     /// Vertices whose normals are to be compared with their triangles, ascending. An unknown normal is zero.
     pub(in super::super) doubtful: Vec<u32>,
+    /// Vertices on edges and corners of the surface, ascending.
+    pub(in super::super) sharp: Vec<SharpVertex>,
 }
 
 impl Done {
     pub(super) fn and(mut self, other: Self) -> Self {
         self.doubtful.extend(other.doubtful);
+        self.sharp.extend(other.sharp);
         Self {
             gradient_evaluations: self.gradient_evaluations + other.gradient_evaluations,
             full_evaluations: self.full_evaluations + other.full_evaluations,
             jump_evaluations: self.jump_evaluations + other.jump_evaluations,
             jump_vertices: self.jump_vertices + other.jump_vertices,
             doubtful: self.doubtful,
+            sharp: self.sharp,
         }
     }
 }
@@ -77,6 +82,8 @@ pub(super) struct VertexBatch {
     pub(super) shared: Vec<Shared>,
     /// Vertices whose normals are doubtful, ascending.
     pub(super) doubtful: Vec<usize>,
+    /// Vertices at jumps of the field.
+    pub(super) jumped: Vec<usize>,
     /// Crossed edges at vertices that get a second look.
     pub(super) crossed: CrossedEdges,
 }

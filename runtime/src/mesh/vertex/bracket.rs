@@ -13,6 +13,7 @@
 //! the same.
 
 use super::super::field::Field;
+use crate::boxes::Box3;
 
 /// Two points, and the field at them: the first is outside, the second inside.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,17 @@ impl Bracket {
     fn width(&self) -> f32 {
         let [outside, inside] = self.ends;
         (0..3).fold(0.0, |width, axis| (outside[axis] - inside[axis]).abs().max(width))
+    }
+
+    /// Where the surface is between its ends, for a linear field.
+    fn secant(&self, iso: f32) -> [f32; 3] {
+        let part = (iso - self.values[0]) / self.rise();
+        let part = if (0.0..=1.0).contains(&part) { part } else { 0.5 };
+        let [outside, inside] = self.ends;
+        [0, 1, 2].map(|axis| {
+            let (from, to) = (outside[axis], inside[axis]);
+            if from == to { from } else { from * (1.0 - part) + to * part }
+        })
     }
 
     /// Keeps the half that holds the surface.
@@ -164,6 +176,87 @@ impl CrossedEdge {
     }
 }
 
+/// How a wall leans at a crossing: its crossings with the edge, and with two lines beside it.
+///
+/// ```text
+///     o-----x--------o     the edge
+///     o------x-------o     a line beside it, a little towards the middle of the cell
+/// ```
+pub(super) struct Leaning {
+    axis: usize,
+    /// The sides of the lines, and the lines; the edge is the first one.
+    beside: [(usize, f32); 2],
+    brackets: [Bracket; 3],
+}
+
+impl CrossedEdge {
+    /// How the wall at its crossing leans towards the mean of the crossings around, in a cell with edges of
+    /// this size.
+    pub(super) fn leaning(&self, mean: [f64; 3], size: f32, cell: Box3) -> Leaning {
+        /// How far the lines are beside the edge, in cells.
+        const BESIDE: f32 = 1.0 / 256.0;
+        /// How far they reach to both sides of the crossing.
+        const REACH: f32 = 1.0 / 16.0;
+        let [outside, inside] = self.bracket.ends;
+        let at = self.crossing();
+        let axis = (0..3).fold(0, |best, axis| {
+            let length = |axis: usize| (outside[axis] - inside[axis]).abs();
+            if length(axis) > length(best) { axis } else { best }
+        });
+        let outward = (outside[axis] - inside[axis]).signum();
+        let beside = [(axis + 1) % 3, (axis + 2) % 3].map(|other| {
+            let towards = (mean[other] as f32 - at[other]).clamp(-BESIDE * size, BESIDE * size);
+            (other, towards)
+        });
+        let line = |(other, towards): (usize, f32)| {
+            let mut ends = [at, at];
+            for (end, way) in ends.iter_mut().zip([outward, -outward]) {
+                end[other] += towards;
+                end[axis] = (end[axis] + way * REACH * size).clamp(cell.low[axis], cell.high[axis]);
+            }
+            Bracket { ends, values: [0.0; 2] }
+        };
+        Leaning { axis, beside, brackets: [self.bracket, line(beside[0]), line(beside[1])] }
+    }
+}
+
+impl Leaning {
+    /// The unit normal of the wall; `None` if it is not between the ends of the lines, or if there is no way
+    /// to the side.
+    pub(super) fn normal<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        points: &mut BracketPoints,
+    ) -> Result<Option<[f64; 3]>, F::Error> {
+        /// Halvings: as many as there are numbers in between.
+        const HALVINGS: usize = 16;
+        let ends = self.brackets.iter().flat_map(|bracket| bracket.ends);
+        let values: Vec<f32> = points.ask(field, region, ends)?.to_vec();
+        for (bracket, values) in self.brackets.iter_mut().zip(values.as_chunks().0) {
+            bracket.values = *values;
+            if bracket.values.map(|value| value >= iso) != [false, true] {
+                return Ok(None);
+            }
+        }
+        if self.beside.iter().any(|(_, way)| *way == 0.0) {
+            return Ok(None);
+        }
+        let outward = (self.brackets[0].ends[0][self.axis] - self.brackets[0].ends[1][self.axis]).signum();
+        let mut brackets: Vec<&mut Bracket> = self.brackets.iter_mut().collect();
+        points.halve(field, region, iso, &mut brackets, HALVINGS)?;
+        let height = |n: usize| f64::from(self.brackets[n].middle()[self.axis]);
+        let mut normal = [0.0; 3];
+        normal[self.axis] = 1.0;
+        for (n, &(other, way)) in self.beside.iter().enumerate() {
+            normal[other] = -(height(n + 1) - height(0)) / f64::from(way);
+        }
+        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt() * f64::from(outward);
+        Ok(Some(normal.map(|c| c / length)))
+    }
+}
+
 /// The crossed edges of a brick that were requested, each once.
 #[derive(Default)]
 pub(super) struct CrossedEdges {
@@ -230,6 +323,38 @@ impl CrossedEdges {
             }
         }
         Ok((is_left, asked))
+    }
+
+    /// Halves some edges to the end.
+    pub(super) fn finish<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        edges: &[u32],
+    ) -> Result<u64, F::Error> {
+        self.halve(field, region, iso, edges.iter(), LOOKS.len() - 1)
+    }
+
+    /// The crossings of all edges, nearly: by the rule of false position.
+    pub(super) fn estimated<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+    ) -> Result<Vec<[f32; 3]>, F::Error> {
+        /// Evaluations for each edge.
+        const STEPS: usize = 2;
+        let mut brackets: Vec<Bracket> = self.edges.iter().map(|edge| edge.bracket).collect();
+        let mut points: Vec<[f32; 3]> = brackets.iter().map(|bracket| bracket.secant(iso)).collect();
+        for _ in 0..STEPS {
+            let values = self.points.ask(field, region, points.iter().copied())?;
+            for ((bracket, point), &value) in brackets.iter_mut().zip(&mut points).zip(values) {
+                bracket.cut(iso, *point, value);
+                *point = bracket.secant(iso);
+            }
+        }
+        Ok(points)
     }
 
     /// The edge of a sheet with the largest rise of the field; the first of equal ones.

@@ -29,12 +29,20 @@ pub(super) struct Sheet {
     /// The edges that the sheet crosses, counter-clockwise as seen from outside: their numbers among the
     /// [`CrossedEdges`] of the brick.
     numbers: [u32; 12],
+    /// Their numbers in the cell.
+    edges: [u8; 12],
     /// The number of these edges.
     count: usize,
     /// The sum of the unit vectors along the edges, from inside to outside.
     outward: [f32; 3],
     /// The edge of the cell.
     pub(super) size: f32,
+    /// The cell.
+    pub(super) cell: Box3,
+    /// The number of the cell in its brick, in Morton order.
+    pub(super) number: u16,
+    /// Which corners of the cell are inside, a bit each.
+    pub(super) signs: u8,
 }
 
 impl Sheet {
@@ -59,7 +67,18 @@ impl Sheet {
         });
         let position = |corner: usize| [0, 1, 2].map(|axis| ends[axis][corner >> axis & 1]);
         let size = (0..3).fold(0.0, |size, axis| (ends[axis][1] - ends[axis][0]).max(size));
-        let mut made = Self { start, corners: [0; 2], numbers: [0; 12], count: 0, outward: [0.0; 3], size };
+        let mut made = Self {
+            start,
+            corners: [0; 2],
+            numbers: [0; 12],
+            edges: [0; 12],
+            count: 0,
+            outward: [0.0; 3],
+            size,
+            cell: Box3::new(position(0), position(7)),
+            number: cell.number,
+            signs: cell.signs,
+        };
         let steps = [1, bricks.stride(), bricks.stride().pow(2)];
         let mut edge = mask.trailing_zeros() as usize;
         for _ in 0..mask.count_ones() {
@@ -72,6 +91,7 @@ impl Sheet {
             let ends = [outside, inside];
             let bracket = || Bracket { ends: ends.map(position), values: ends.map(|end| values[end]) };
             made.numbers[made.count] = crossed.number(at, edge / 4, || CrossedEdge::new(bracket()));
+            made.edges[made.count] = edge as u8;
             made.count += 1;
             made.outward[edge / 4] += if is_rising { -1.0 } else { 1.0 };
             edge = usize::from(next[edge]);
@@ -82,6 +102,11 @@ impl Sheet {
     /// Its edges by their numbers.
     pub(super) fn numbers(&self) -> &[u32] {
         &self.numbers[..self.count]
+    }
+
+    /// The numbers of these edges in the cell.
+    pub(super) fn edges(&self) -> &[u8] {
+        &self.edges[..self.count]
     }
 
     /// Its crossed edges, in order.

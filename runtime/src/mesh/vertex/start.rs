@@ -14,6 +14,7 @@ impl VertexBatch {
         self.resize(count);
         self.shared.clear();
         self.doubtful.clear();
+        self.jumped.clear();
         self.sow(source, brick);
         let points = self.points.each_mut().map(Vec::as_mut_slice);
         grow(source.options.iso, &self.seeds, &mut self.groups, points);

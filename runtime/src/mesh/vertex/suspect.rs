@@ -113,6 +113,7 @@ impl VertexBatch {
         }
         jump_evaluations += follow(*field, region, iso, &mut walls)?;
         let gradient_evaluations = settle(*field, region, iso, &mut strays)?;
+        self.jumped.extend(walls.iter().map(|wall| wall.vertex));
         let placed = walls.iter().map(|wall| {
             let &Wall { vertex, position, inside, normal, .. } = wall;
             Again { vertex, position, asked: inside, normal }
@@ -128,7 +129,7 @@ impl VertexBatch {
             full_evaluations: again.len() as u64,
             jump_evaluations,
             jump_vertices: walls.len() as u64,
-            doubtful: Vec::new(),
+            ..Done::default()
         })
     }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::anisotropic::{Kernel, kernels};
 use super::options::{ParticleForm, ParticleOptions};
 use crate::import::imported::ReadModel;
 use crate::import::srgb::decoded;
@@ -55,6 +56,7 @@ impl Cloud {
         }
         let radius = self.radius(options)?;
         self.count_repeated(&positions);
+        let kernels = self.shaped(&positions, options)?;
         let (radius, strength, falloff, iso) =
             formed(options.form.unwrap_or_default(), radius, self.strengths);
         let mut particles = WrittenParticles { strength, ..WrittenParticles::new(positions, radius) };
@@ -74,10 +76,36 @@ impl Cloud {
             });
             particles = particles.with_values(ParticleValues { name: name.into(), width, numbers });
         }
-        let mut model = Model::new(Tree::new(particles, Vec::new()));
+        let mut tree = Tree::new(particles, Vec::new());
+        if let Some(kernels) = kernels {
+            let points = tree.as_points();
+            let both = points.node().children().iter().zip(kernels);
+            tree = Tree::sum(both.map(|(point, kernel)| point.affine(kernel.rows)));
+        }
+        let mut model = Model::new(tree);
         model.iso = Number::from(iso);
         model.attributes.extend(groups);
         Ok((model, self.warnings))
+    }
+
+    /// The kernels of the points, if they are to follow their neighbourhoods; their strengths are in those of
+    /// the points then.
+    fn shaped(
+        &mut self,
+        positions: &NumberArray,
+        options: &ParticleOptions,
+    ) -> Result<Option<Vec<Kernel>>, Vec<Diagnostic>> {
+        let Some(radius) = options.anisotropic else { return Ok(None) };
+        if !(radius > 0.0 && radius.is_finite()) {
+            let message = format!("the radius of neighbourhoods is {radius}");
+            return Err(vec![Diagnostic::error(None, message).expected("expected a number above 0")]);
+        }
+        let kernels = kernels(positions, radius)?;
+        let strength = |n: usize| self.strengths.as_ref().map_or(1.0, |strengths| strengths.at(n));
+        let strengths: Vec<f64> =
+            kernels.iter().enumerate().map(|(n, kernel)| kernel.strength * strength(n)).collect();
+        self.strengths = Some(strengths.into());
+        Ok(Some(kernels))
     }
 
     /// The radii: those of the file, or the one that was asked for.

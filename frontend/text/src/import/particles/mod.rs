@@ -8,6 +8,7 @@
 //! The model is the sum of the points. Each alone has its surface at its radius r, in one of two
 //! [forms](ParticleForm).
 
+mod anisotropic;
 mod atoms;
 mod bytes;
 pub(super) mod cif;

@@ -20,6 +20,10 @@ pub struct ParticleOptions {
     pub scale: Option<f64>,
     /// The field of a particle.
     pub form: Option<ParticleForm>,
+    /// Points are ellipsoids that follow the shape of their neighbourhood, which has this radius: the surface
+    /// of a fluid is smooth then, and its sheets are thin (Yu and Turk 2013). Several times the distance of
+    /// neighbours.
+    pub anisotropic: Option<f64>,
     /// What the columns of a table are, in their order, instead of a head line: `x`, `y`, `z`, `radius`,
     /// `strength`, `r`, `g`, `b`, the name of an attribute, or `-` for one to leave out.
     pub columns: Vec<String>,

@@ -1,5 +1,5 @@
-//! Files that a scene includes: all that it names are read first, and stand behind its own text in one range of
-//! bytes. A directive goes there, and the end of the file goes back.
+//! Files that a scene includes: all that it names are read first, and stand behind its own text in one
+//! range of bytes. A directive goes there, and the end of the file goes back.
 //!
 //! ```text
 //! scene.pov ... | 0 | shapes.inc ... | 0 | more.inc ...

@@ -1,12 +1,12 @@
 //! Parts of a model by their names: a model of nothing else, and one without them.
 
-use super::Tree;
+use super::Model;
 use crate::combine::{Combinator, CombinatorKind, Sum};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::field::FieldKind;
-use crate::model::Model;
 use crate::path::{Met, NamedNodes, NodePath, nowhere, search, too_many};
 use crate::traverse::Visit;
+use crate::tree::Tree;
 use crate::tree::order::PlainNodes;
 use crate::written::{FieldNumber, Written};
 

@@ -1,0 +1,92 @@
+//! Creases: edges and corners of a mesh, at which triangles that share a vertex have other normals.
+//!
+//! ```text
+//!     ^ n_A                 A vertex on an edge has one position, so the mesh is closed. Each quad is around
+//!     |                     one crossed edge of the lattice, and each crossing is on one side of the edge; so
+//!   --v.  A                 the corners of its triangles have the normal and the attributes of that side.
+//!      \ --> n_B
+//!       \ B
+//! ```
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::indexed::{Attribute, Creases, Mesh};
+use super::vertex::side::SharpVertex;
+
+impl Creases {
+    /// Adds the creases of a mesh whose vertices and triangles come behind so many.
+    pub(crate) fn append(&mut self, other: Self, (vertices, triangles): (u32, usize)) {
+        let (sides, corners) = (self.vertices.len() as u32, 3 * triangles as u32);
+        self.vertices.extend(other.vertices.iter().map(|vertex| vertices + vertex));
+        self.normals.extend(other.normals);
+        self.attributes.resize(self.attributes.len().max(other.attributes.len()), Vec::new());
+        for (to, from) in self.attributes.iter_mut().zip(other.attributes) {
+            to.extend(from);
+        }
+        self.corners.extend(other.corners.iter().map(|[corner, side]| [corners + corner, sides + side]));
+    }
+
+    /// Those of some vertices and triangles of a mesh, whose attributes have these widths.
+    pub(crate) fn of(&self, vertices: Range<usize>, triangles: Range<usize>, widths: &[usize]) -> Self {
+        let among = |list: &[u32], range: &Range<usize>| {
+            let before = |end: usize| list.partition_point(|&index| (index as usize) < end);
+            before(range.start)..before(range.end)
+        };
+        let sides = among(&self.vertices, &vertices);
+        let first = self.corners.partition_point(|[corner, _]| (*corner as usize) < 3 * triangles.start);
+        let end = self.corners.partition_point(|[corner, _]| (*corner as usize) < 3 * triangles.end);
+        let (vertex, corner, side) = (vertices.start as u32, 3 * triangles.start as u32, sides.start as u32);
+        let values = |(values, width): (&Vec<f32>, &usize)| {
+            values.get(width * sides.start..width * sides.end).unwrap_or_default().to_vec()
+        };
+        Self {
+            vertices: self.vertices[sides.clone()].iter().map(|index| index - vertex).collect(),
+            normals: self.normals[sides.clone()].to_vec(),
+            attributes: self.attributes.iter().zip(widths).map(values).collect(),
+            corners: self.corners[first..end].iter().map(|[a, b]| [a - corner, b - side]).collect(),
+        }
+    }
+
+    /// Adds the sides of a vertex of a mesh whose attributes have these widths.
+    pub(crate) fn push(&mut self, vertex: u32, sharp: &SharpVertex, widths: &[usize]) {
+        self.attributes.resize(widths.len(), Vec::new());
+        for side in &sharp.sides {
+            self.vertices.push(vertex);
+            self.normals.push(side.normal);
+            let mut rest = &side.attributes[..];
+            for (values, &width) in self.attributes.iter_mut().zip(widths) {
+                let (mine, after) = rest.split_at(width);
+                values.extend_from_slice(mine);
+                rest = after;
+            }
+        }
+    }
+}
+
+impl Mesh {
+    /// The mesh with a vertex for each side of its [creases](Self::creases), as files and graphics cards want
+    /// it: behind the others, at the positions of their vertices. It is closed by positions alone.
+    #[must_use]
+    pub fn split(&self) -> Cow<'_, Self> {
+        let creases = &self.creases;
+        if creases.corners.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        if !self.parts.is_empty() {
+            return Cow::Owned(self.each_piece(|piece| piece.split().into_owned()));
+        }
+        let count = self.positions.len();
+        let mut split = Self { creases: Creases::default(), ..self.clone() };
+        split.positions.extend(creases.vertices.iter().map(|&vertex| self.positions[vertex as usize]));
+        split.normals.extend_from_slice(&creases.normals);
+        for (attribute, values) in split.attributes.iter_mut().zip(&creases.attributes) {
+            let Attribute { values: all, .. } = attribute;
+            all.extend_from_slice(values);
+        }
+        for &[corner, side] in &creases.corners {
+            split.triangles[corner as usize / 3][corner as usize % 3] = (count + side as usize) as u32;
+        }
+        Cow::Owned(split)
+    }
+}

@@ -1,0 +1,101 @@
+//! A vertex that may be on an edge, with its crossings by their sides.
+
+use super::super::super::surface::unit;
+use super::super::sheet::{Sheet, Start};
+use super::super::side::SharpSide;
+use super::crossing::{Crossing, SHARP, dot};
+use super::quadric::{self, Aim};
+use crate::boxes::Box3;
+
+/// A vertex that may be on an edge.
+pub(super) struct Candidate<'a> {
+    pub(super) sheet: &'a Sheet,
+    pub(super) crossings: Vec<Crossing>,
+    pub(super) mean: [f64; 3],
+    /// For each crossing, its side.
+    pub(super) sides: Vec<usize>,
+    pub(super) count: usize,
+    pub(super) position: [f32; 3],
+    /// Whether the position is beyond the cell.
+    pub(super) is_beyond: bool,
+}
+
+impl<'a> Candidate<'a> {
+    /// A vertex on an edge; `None` if its crossings have no sharp edge between them.
+    pub(super) fn new(sheet: &'a Sheet, crossings: Vec<Crossing>) -> Option<Self> {
+        let mut mean = [0.0; 3];
+        for crossing in &crossings {
+            mean.iter_mut().zip(crossing.place).for_each(|(sum, c)| *sum += f64::from(c));
+        }
+        let mean = mean.map(|sum| sum / crossings.len() as f64);
+        let (sides, count) = grouped(&crossings);
+        let is_sharp = (0..crossings.len()).any(|a| {
+            (0..a).any(|b| sides[a] != sides[b] && dot(crossings[a].normal, crossings[b].normal) < SHARP)
+        });
+        let Start { bounds, .. } = sheet.start;
+        let position = bounds.low;
+        is_sharp.then_some(Self { sheet, crossings, mean, sides, count, position, is_beyond: false })
+    }
+
+    /// Where the planes of its crossings meet.
+    pub(super) fn aim(&self) -> Option<Aim> {
+        quadric::aim(&self.crossings, self.mean)
+    }
+
+    /// Where the planes of the two sides with the most crossings meet.
+    pub(super) fn edge(&self) -> Option<Aim> {
+        let mut sides: Vec<(usize, usize)> =
+            (0..self.count).map(|side| (self.sides.iter().filter(|&&of| of == side).count(), side)).collect();
+        sides.sort_by_key(|&(crossings, side)| (usize::MAX - crossings, side));
+        let chosen: Vec<usize> = sides.iter().take(2).map(|&(_, side)| side).collect();
+        let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
+        let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
+        quadric::aim(&both, self.mean).filter(|aim| matches!(aim, Aim::Line(..)))
+    }
+
+    /// The sides, with the means of what is at their crossings.
+    pub(super) fn sides(&self, channels: usize, attribute: &dyn Fn(usize, usize) -> f32) -> Vec<SharpSide> {
+        let side = |side: usize| {
+            let mine: Vec<usize> = (0..self.sides.len()).filter(|&n| self.sides[n] == side).collect();
+            let (mut edges, mut sum) = (0, [0.0; 3]);
+            for &n in &mine {
+                edges |= 1 << self.sheet.edges()[n];
+                sum.iter_mut().zip(self.crossings[n].normal).for_each(|(sum, c)| *sum += c);
+            }
+            let normal = unit(sum).unwrap_or_else(|| self.crossings[mine[0]].normal.map(|c| c as f32));
+            let mean = |channel: usize| {
+                let sum: f64 = mine.iter().map(|&n| f64::from(attribute(channel, n))).sum();
+                (sum / mine.len() as f64) as f32
+            };
+            SharpSide { edges, normal, attributes: (0..channels).map(mean).collect() }
+        };
+        (0..self.count).map(side).collect()
+    }
+}
+
+/// The side of each crossing, and the number of sides: crossings of one signature; at jumps, which have none,
+/// those with normals near that of the first.
+fn grouped(crossings: &[Crossing]) -> (Vec<usize>, usize) {
+    let mut first: Vec<usize> = Vec::new();
+    let sides = crossings.iter().enumerate().map(|(n, crossing)| {
+        let alike = |&of: &usize| {
+            let other = &crossings[of];
+            match (crossing.signature, other.signature) {
+                (Some(a), Some(b)) => a == b,
+                (None, None) => dot(crossing.normal, other.normal) >= SHARP,
+                (Some(_), None) | (None, Some(_)) => false,
+            }
+        };
+        first.iter().position(alike).unwrap_or_else(|| {
+            first.push(n);
+            first.len() - 1
+        })
+    });
+    let sides: Vec<usize> = sides.collect();
+    (sides, first.len())
+}
+
+/// A point within a box.
+pub(super) fn clamped(point: [f64; 3], Box3 { low, high }: Box3) -> [f32; 3] {
+    [0, 1, 2].map(|axis| (point[axis] as f32).clamp(low[axis], high[axis]))
+}

@@ -1,0 +1,175 @@
+//! A cube that judges meshes of itself.
+
+use glam::{DAffine3, DQuat, DVec3};
+use jbt::Polygonized;
+
+/// A cube about the origin.
+pub(crate) struct Cube {
+    half: f64,
+    /// From the world to its axes.
+    inverse: DAffine3,
+}
+
+/// How well a mesh has the edges of a cube. Lengths are in cells.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// Cells whose crossings are on several faces.
+    pub(crate) cells: usize,
+    /// Of these, those whose vertex is within 1e-2 of an edge.
+    pub(crate) good: usize,
+    /// The largest distance of such a vertex from an edge.
+    pub(crate) worst: f64,
+    /// The largest distance of a corner of the cube from a vertex.
+    pub(crate) worst_corner: f64,
+    /// Triangles that look inwards.
+    pub(crate) folded: usize,
+}
+
+/// The ends of the edges of a cell, as steps of its low corner.
+const EDGES: [([usize; 3], usize); 12] = [
+    ([0, 0, 0], 0),
+    ([0, 1, 0], 0),
+    ([0, 0, 1], 0),
+    ([0, 1, 1], 0),
+    ([0, 0, 0], 1),
+    ([1, 0, 0], 1),
+    ([0, 0, 1], 1),
+    ([1, 0, 1], 1),
+    ([0, 0, 0], 2),
+    ([1, 0, 0], 2),
+    ([0, 1, 0], 2),
+    ([1, 1, 0], 2),
+];
+
+impl Cube {
+    pub(crate) fn along_axes(half: f64) -> Self {
+        Self { half, inverse: DAffine3::IDENTITY }
+    }
+
+    pub(crate) fn turned(half: f64, axis: [f64; 3], degrees: f64) -> Self {
+        let turn = DQuat::from_axis_angle(DVec3::from(axis).normalize(), degrees.to_radians());
+        Self { half, inverse: DAffine3::from_quat(turn).inverse() }
+    }
+
+    /// How far inside a point is.
+    fn depth(&self, p: DVec3) -> f64 {
+        self.half - self.inverse.transform_point3(p).abs().max_element()
+    }
+
+    /// The face that is nearest to a point of the surface.
+    fn face(&self, p: DVec3) -> usize {
+        let q = self.inverse.transform_point3(p);
+        let axis = (0..3).fold(0, |best, axis| if q[axis].abs() > q[best].abs() { axis } else { best });
+        2 * axis + usize::from(q[axis] > 0.0)
+    }
+
+    /// The distance of a point from the nearest edge.
+    fn edge_distance(&self, p: DVec3) -> f64 {
+        let q = self.inverse.transform_point3(p).abs();
+        let off = |axis: usize| {
+            let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
+            DVec3::new((q[axis] - self.half).max(0.0), q[b] - self.half, q[c] - self.half).length()
+        };
+        (0..3).map(off).fold(f64::INFINITY, f64::min)
+    }
+
+    pub(crate) fn judge(&self, made: &Polygonized) -> Found {
+        let (cells, size) = (made.lattice.cells(), made.lattice.spacing());
+        let coordinates = |axis: usize| (0..=cells[axis]).map(move |n| made.lattice.coordinate(axis, n));
+        let axes = [0, 1, 2].map(|axis| coordinates(axis).collect::<Vec<f32>>());
+        let positions: Vec<DVec3> =
+            made.mesh.positions.iter().map(|&p| DVec3::from(p.map(f64::from))).collect();
+        let at = |index: [usize; 3]| DVec3::from([0, 1, 2].map(|axis| f64::from(axes[axis][index[axis]])));
+        let mut crossed: Vec<([usize; 3], u8)> = (0..cells[0])
+            .flat_map(|x| (0..cells[1]).flat_map(move |y| (0..cells[2]).map(move |z| [x, y, z])))
+            .map(|cell| (cell, self.signs(cell, &at)))
+            .filter(|(_, signs)| (1..255).contains(signs))
+            .collect();
+        // Vertices are in the order of their cells, which is Morton order.
+        crossed.sort_by_key(|(cell, _)| morton(*cell));
+        let expected: usize = crossed.iter().map(|(_, signs)| sheets(*signs)).sum();
+        assert_eq!(expected, positions.len(), "each sheet of a cell has a vertex");
+        let (mut found, mut next) = (Found::default(), 0);
+        for (cell, signs) in crossed {
+            let (vertex, count) = (next, sheets(signs));
+            next += count;
+            if count > 1 || self.faces(cell, &at).count_ones() < 2 {
+                continue;
+            }
+            let distance = self.edge_distance(positions[vertex]) / size;
+            found.cells += 1;
+            found.good += usize::from(distance < 1e-2);
+            found.worst = found.worst.max(distance);
+        }
+        for corner in 0..8 {
+            let corner = DVec3::from(
+                [0, 1, 2].map(|axis| if corner >> axis & 1 == 1 { self.half } else { -self.half }),
+            );
+            let corner = self.inverse.inverse().transform_point3(corner);
+            let nearest = positions.iter().map(|p| p.distance(corner)).fold(f64::INFINITY, f64::min);
+            found.worst_corner = found.worst_corner.max(nearest / size);
+        }
+        for triangle in &made.mesh.triangles {
+            let [p, q, r] = triangle.map(|vertex| positions[vertex as usize]);
+            let area = (q - p).cross(r - p);
+            // Slivers have no side.
+            let is_there = area.length() > 1e-3 * size * size;
+            found.folded += usize::from(is_there && area.dot(p + q + r) < 0.0);
+        }
+        found
+    }
+
+    /// Which corners of a cell are inside, a bit each.
+    fn signs(&self, cell: [usize; 3], at: &dyn Fn([usize; 3]) -> DVec3) -> u8 {
+        let corner = |n: usize| at([0, 1, 2].map(|axis| cell[axis] + (n >> axis & 1)));
+        (0..8).fold(0, |signs, n| signs | u8::from(self.depth(corner(n)) >= 0.0) << n)
+    }
+
+    /// The faces on which the crossings of a cell are, a bit each.
+    fn faces(&self, cell: [usize; 3], at: &dyn Fn([usize; 3]) -> DVec3) -> u8 {
+        let mut faces = 0;
+        for (step, axis) in EDGES {
+            let low = [0, 1, 2].map(|n| cell[n] + step[n]);
+            let mut high = low;
+            high[axis] += 1;
+            let (mut outside, mut inside) = (at(low), at(high));
+            if (self.depth(outside) >= 0.0) == (self.depth(inside) >= 0.0) {
+                continue;
+            }
+            if self.depth(outside) >= 0.0 {
+                (outside, inside) = (inside, outside);
+            }
+            for _ in 0..40 {
+                let middle = 0.5 * (outside + inside);
+                if self.depth(middle) >= 0.0 { inside = middle } else { outside = middle }
+            }
+            faces |= 1_u8 << self.face(inside);
+        }
+        faces
+    }
+}
+
+fn morton(cell: [usize; 3]) -> u64 {
+    (0..20).fold(0, |bits, bit| {
+        (0..3).fold(bits, |bits, axis| bits | (cell[axis] as u64 >> bit & 1) << (3 * bit + axis))
+    })
+}
+
+/// The sheets of a cell of a convex body: one for each part of its corners inside, or outside.
+fn sheets(signs: u8) -> usize {
+    let parts = |signs: u8| {
+        let (mut left, mut count) = (signs, 0);
+        while left != 0 {
+            let mut part: u8 = 1 << left.trailing_zeros();
+            for n in (0..8).cycle().take(64) {
+                if part >> n & 1 == 1 {
+                    part |= (0..3).fold(0, |bits, axis| bits | 1 << (n ^ 1 << axis)) & signs;
+                }
+            }
+            left &= !part;
+            count += 1;
+        }
+        count
+    };
+    parts(signs).max(parts(!signs))
+}
