@@ -3,11 +3,11 @@
 
 use std::sync::LazyLock;
 
-use jbt_targets::Target;
+use jbt_targets::FuzzTarget;
 use libfuzzer_sys::fuzz_target;
 
 thread_local! {
-    static TARGET: LazyLock<Target> = LazyLock::new(|| jbt_targets::target("function"));
+    static TARGET: LazyLock<FuzzTarget> = LazyLock::new(|| jbt_targets::target("function"));
 }
 
 fuzz_target!(|bytes: &[u8]| TARGET.with(|target| target.run(bytes)));

@@ -3,11 +3,11 @@
 
 use std::sync::LazyLock;
 
-use jbt_targets::Target;
+use jbt_targets::FuzzTarget;
 use libfuzzer_sys::fuzz_target;
 
 thread_local! {
-    static TARGET: LazyLock<Target> = LazyLock::new(|| {
+    static TARGET: LazyLock<FuzzTarget> = LazyLock::new(|| {
         let format = std::env::var("JBT_FORMAT").unwrap_or_else(|_| "jbt".to_owned());
         jbt_targets::target(&format!("read-{format}"))
     });

@@ -204,8 +204,8 @@ fn part(shape: &ModelShape, rows: &[u8]) -> Result<ModelPart, Refusal> {
     Ok(from_rows(compiler(None), shape, &ModelRows::from_bytes(rows)?)?)
 }
 
-/// What a block of a mesh tells: vertices, triangles, names of others' vertices, whether it has a rim, and the
-/// sides of the lattice that cut the body.
+/// What a block of a mesh tells: vertices, triangles, names of others' vertices, whether it has a rim, and
+/// the sides of the lattice that cut the body.
 #[pyfunction]
 pub(crate) fn block_facts(
     py: Python<'_>,

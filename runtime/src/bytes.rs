@@ -1,7 +1,7 @@
 //! Plain bytes for other processes: numbers in little-endian order, lists with their length in front.
 //!
-//! What is read may be anybody's. A length is compared with the bytes that are left before memory is taken, and
-//! a reader says at which byte it stopped.
+//! What is read may be anybody's. A length is compared with the bytes that are left before memory is taken,
+//! and a reader says at which byte it stopped.
 
 use crate::error::{Classified, ErrorKind};
 
@@ -193,8 +193,8 @@ impl<'a> ByteReader<'a> {
     }
 }
 
-/// A number that tells bytes apart: FNV-1a (Fowler, Noll, Vo 1991), of 64 bits. It guards against mistakes, not
-/// against malice.
+/// A number that tells bytes apart: FNV-1a (Fowler, Noll, Vo 1991), of 64 bits. It guards against mistakes,
+/// not against malice.
 pub(crate) fn fingerprint(bytes: &[u8]) -> u64 {
     bytes
         .iter()

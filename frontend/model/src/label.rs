@@ -8,7 +8,7 @@ use crate::diagnostic::{Note, Span};
 
 /// What is known of a node besides its meaning. Most nodes have none.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub struct Label {
+pub struct NodeLabel {
     /// Its name.
     pub name: Option<Arc<str>>,
     /// Whether it is a part: a solid of its own, if it stands right below the root.

@@ -96,7 +96,7 @@ pub(crate) struct Step<'a> {
 }
 
 /// What a search meets.
-pub(crate) enum Met<N> {
+pub(crate) enum MetNode<N> {
     /// Nothing of the path is in this subtree.
     Other,
     /// A place that the path leads to.
@@ -123,7 +123,7 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
     root: N::Node,
     path: &NodePath,
     inside: bool,
-    mut meet: impl FnMut(Met<N::Node>, &[(N::Node, usize)], &[Step<'a>]),
+    mut meet: impl FnMut(MetNode<N::Node>, &[(N::Node, usize)], &[Step<'a>]),
 ) -> Result<(), TooManyPlaces> {
     let relevant = relevant(nodes, root, path);
     let mut frames: Vec<SearchFrame<N::Node>> = Vec::new();
@@ -139,7 +139,7 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
                 return Err(TooManyPlaces);
             }
             if !relevant.contains(&nodes.identity(node)) {
-                meet(Met::Other, &above, &way);
+                meet(MetNode::Other, &above, &way);
             } else {
                 let name = nodes.name(node);
                 if let Some(name) = name {
@@ -150,7 +150,7 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
                 }
                 let found = name.is_some() && path.ends(&way);
                 if found {
-                    meet(Met::Found(node), &above, &way);
+                    meet(MetNode::Found(node), &above, &way);
                 }
                 if found && !inside {
                     way.pop();
@@ -171,7 +171,7 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
             None => {
                 let SearchFrame { node, is_named, .. } = frames.pop().expect("there is a last one");
                 above.pop();
-                meet(Met::Left(node), &above, &way);
+                meet(MetNode::Left(node), &above, &way);
                 if is_named {
                     way.pop();
                     counts.pop();

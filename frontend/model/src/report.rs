@@ -5,7 +5,7 @@ use std::sync::Arc;
 use jbt_ir::limits::MAX_ERRORS;
 
 use crate::diagnostic::{Diagnostic, Note, Span};
-use crate::label::Label;
+use crate::label::NodeLabel;
 
 /// Diagnostics of one reader.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ impl Report {
 
     /// Says of all messages that were added since there were so many in which calls their node stands. What
     /// is told already about the same place in other calls is not told again.
-    pub(crate) fn expanded_in(&mut self, since: usize, label: Option<&Arc<Label>>) {
+    pub(crate) fn expanded_in(&mut self, since: usize, label: Option<&Arc<NodeLabel>>) {
         let Some(calls) = label.and_then(|label| label.calls.as_ref()) else { return };
         let new = self.kept.split_off(since.min(self.kept.len()));
         for diagnostic in new {

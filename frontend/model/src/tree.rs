@@ -18,7 +18,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::diagnostic::Span;
-use crate::label::Label;
+use crate::label::NodeLabel;
 use crate::traverse::Visit;
 use crate::word::normalized;
 use crate::written::Written;
@@ -36,7 +36,7 @@ pub struct Node {
     children: Vec<Tree>,
     span: Option<Span>,
     /// Its name, and the calls around it.
-    label: Option<Arc<Label>>,
+    label: Option<Arc<NodeLabel>>,
     /// Whether a number of this node, or of one below, depends on a parameter.
     depends: bool,
 }
@@ -50,7 +50,7 @@ impl Node {
 
     /// What its text says about it besides what it means.
     #[must_use]
-    pub fn label(&self) -> Option<&Arc<Label>> {
+    pub fn label(&self) -> Option<&Arc<NodeLabel>> {
         self.label.as_ref()
     }
 
@@ -115,14 +115,14 @@ impl Tree {
     /// ```
     #[must_use]
     pub fn named(self, name: &str) -> Self {
-        let label = self.node().label().map(|label| Label::clone(label)).unwrap_or_default();
+        let label = self.node().label().map(|label| NodeLabel::clone(label)).unwrap_or_default();
         let name = Some(normalized(name).into());
-        self.labelled(Some(Arc::new(Label { name, ..label })))
+        self.labelled(Some(Arc::new(NodeLabel { name, ..label })))
     }
 
     /// The same node with another label.
     #[must_use]
-    pub fn labelled(mut self, label: Option<Arc<Label>>) -> Self {
+    pub fn labelled(mut self, label: Option<Arc<NodeLabel>>) -> Self {
         if let Some(node) = Arc::get_mut(&mut self.0) {
             node.label = label;
             return self;

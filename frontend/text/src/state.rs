@@ -17,7 +17,7 @@ use super::texts::Texts;
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::Label;
+use jbt_model::label::NodeLabel;
 use jbt_model::model::{Comments, Model};
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
@@ -263,7 +263,7 @@ impl<'a> Parser<'a> {
         match &self.program.calls {
             None => tree,
             Some(calls) => {
-                let label = Label { calls: Some(Arc::clone(calls)), ..Label::default() };
+                let label = NodeLabel { calls: Some(Arc::clone(calls)), ..NodeLabel::default() };
                 tree.labelled(Some(Arc::new(label)))
             }
         }

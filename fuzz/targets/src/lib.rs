@@ -19,7 +19,7 @@ mod read;
 mod table;
 
 pub use read::{format_word, read};
-pub use table::{Target, target, targets};
+pub use table::{FuzzTarget, target, targets};
 
 /// CSV points: the reader of the binary, which has no library.
 #[path = "../../../cli/src/points.rs"]

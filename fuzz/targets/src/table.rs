@@ -6,7 +6,7 @@ use crate::read::{format_word, read};
 use crate::{engines, function, mesh, points, print, prune};
 
 /// Something that takes bytes.
-pub struct Target {
+pub struct FuzzTarget {
     /// Its name, which is that of its folders of inputs.
     pub name: String,
     /// The program of libFuzzer that runs it.
@@ -16,13 +16,13 @@ pub struct Target {
     run: Box<dyn Fn(&[u8])>,
 }
 
-impl std::fmt::Debug for Target {
+impl std::fmt::Debug for FuzzTarget {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Target").field("name", &self.name).finish_non_exhaustive()
     }
 }
 
-impl Target {
+impl FuzzTarget {
     fn new(name: &'static str, what: &str, run: fn(&[u8])) -> Self {
         Self { name: name.to_owned(), program: name, what: what.to_owned(), run: Box::new(run) }
     }
@@ -50,29 +50,33 @@ impl Target {
 
 /// All targets.
 #[must_use]
-pub fn targets() -> Vec<Target> {
+pub fn targets() -> Vec<FuzzTarget> {
     let others = [
-        Target::new(
+        FuzzTarget::new(
             "function",
             "IR text is read or refused; passes and engines keep its bits",
             function::run,
         ),
-        Target::new("points", "points as CSV are read or refused, with located errors", read_points),
-        Target::new("print", "what is printed of a model reads back as the same model", print::run),
-        Target::new("engines", "all engines and levels give the same bits", engines::run),
-        Target::new(
+        FuzzTarget::new("points", "points as CSV are read or refused, with located errors", read_points),
+        FuzzTarget::new("print", "what is printed of a model reads back as the same model", print::run),
+        FuzzTarget::new("engines", "all engines and levels give the same bits", engines::run),
+        FuzzTarget::new(
             "prune",
             "rows that are left out in a box change no bit; ranges hold the field",
             prune::run,
         ),
-        Target::new("mesh", "meshes are closed manifolds, with the same bits on other engines", mesh::run),
+        FuzzTarget::new(
+            "mesh",
+            "meshes are closed manifolds, with the same bits on other engines",
+            mesh::run,
+        ),
     ];
-    SceneFormat::ALL.into_iter().map(Target::of_format).chain(others).collect()
+    SceneFormat::ALL.into_iter().map(FuzzTarget::of_format).chain(others).collect()
 }
 
 /// The target of a name. Panics with all names if there is none.
 #[must_use]
-pub fn target(name: &str) -> Target {
+pub fn target(name: &str) -> FuzzTarget {
     let all = targets();
     let names: Vec<String> = all.iter().map(|target| target.name.clone()).collect();
     let found = all.into_iter().find(|target| target.name == name);

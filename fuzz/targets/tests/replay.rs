@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use jbt_targets::{Target, targets};
+use jbt_targets::{FuzzTarget, targets};
 
 /// What one input may take, on a loaded machine without optimisation of the tests' own code.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -63,7 +63,7 @@ fn targets_take_nothing_and_noise() {
 #[test]
 fn random_models_hold() {
     let count = jbt_testkit::scene::count("JBT_TARGET_MODELS", 40);
-    for target in targets().into_iter().filter(Target::compiles) {
+    for target in targets().into_iter().filter(FuzzTarget::compiles) {
         for seed in 0..count {
             let mut rng = fastrand::Rng::with_seed(seed);
             let bytes: Vec<u8> = (0..18).map(|_| rng.u8(..)).collect();

@@ -47,6 +47,8 @@ impl Task {
 /// By how many times passes may make a program longer: a logarithm has some 30 ops, its range and that of its
 /// gradient several times as many.
 const LARGEST_GROWTH: usize = 256;
+/// By how many times a program of ranges may be longer than that for the field, when it is lowered.
+const RANGES_GROWTH: usize = 4;
 
 impl Compiled {
     /// Those of some tasks that the model is too large for: one of their programs would be beyond a limit,
@@ -58,6 +60,12 @@ impl Compiled {
     pub fn too_large_for(&self, tasks: &[Task]) -> Result<Vec<(Task, CompileError)>, CompileError> {
         jbt_ir::watch::stoppable(|| {
             let lowering = Lowering::with(self.tree(), &PoolWorkers);
+            // The program for all answers is the longest that lowering makes, but for that of ranges, which is
+            // a few times that for the field.
+            let longest = self.lowered(Some(&lowering), |lowering| lowering.answers(Query::ALL))?;
+            if longest.function.values.len() <= MAX_VALUES / LARGEST_GROWTH / RANGES_GROWTH {
+                return Ok(Vec::new());
+            }
             let mut looked: Vec<(Purpose, Option<CompileError>)> = Vec::new();
             let mut refused = Vec::new();
             for &task in tasks {
@@ -81,17 +89,16 @@ impl Compiled {
     }
 
     /// Why a program cannot be had, if passes make it too long.
-    fn beyond(
-        &self,
-        lowering: &Lowering<'_>,
+    fn beyond<'t>(
+        &'t self,
+        lowering: &Lowering<'t>,
         need: Need,
         purpose: Purpose,
     ) -> Result<Option<CompileError>, CompileError> {
-        let function = match need {
+        let function = self.lowered(Some(lowering), |lowering| match need {
             Need::Answers(_, query) => lowering.answers(query).map(|lowered| lowered.function),
             Need::Ranges => lowering.ranges().map(|ranges| ranges.function),
-        };
-        let function = function.map_err(|list| CompileError::from(self.tree().diagnostics(list)))?;
+        })?;
         if function.values.len() <= MAX_VALUES / LARGEST_GROWTH {
             return Ok(None);
         }

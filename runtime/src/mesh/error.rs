@@ -65,8 +65,8 @@ pub enum MeshError<E: Error + 'static> {
         /// How many points there are.
         points: usize,
     },
-    /// Whether faces of a block of cells are flipped depends on cells further away than was looked at: a chain
-    /// of ambiguous faces leads there. It has to be asked again with a larger reach.
+    /// Whether faces of a block of cells are flipped depends on cells further away than was looked at: a
+    /// chain of ambiguous faces leads there. It has to be asked again with a larger reach.
     #[error("flipped faces depend on cells more than {reach} cells away from the block")]
     Reach {
         /// How far was looked, in cells.

@@ -7,11 +7,11 @@ use crate::touched::Touched;
 pub(crate) enum DivisionScope<'a> {
     /// The whole lattice.
     Everything,
-    /// Boxes that an edit has touched. Ranges are computed of bricks alone: there are few boxes on the way, and
-    /// the largest have the most rows.
+    /// Boxes that an edit has touched. Ranges are computed of bricks alone: there are few boxes on the way,
+    /// and the largest have the most rows.
     Touched(&'a Touched<3>),
-    /// The cells from the first corner to before the second one. Ranges are computed of boxes that are inside:
-    /// of the field elsewhere nothing needs to be known.
+    /// The cells from the first corner to before the second one. Ranges are computed of boxes that are
+    /// inside: of the field elsewhere nothing needs to be known.
     Cells([[usize; 3]; 2]),
 }
 

@@ -35,8 +35,8 @@ pub struct ModelPart {
     formulas: bool,
 }
 
-/// A part of a model from the shape of the whole and from the rows that reach a box. The programs are those of
-/// the whole, so a compiler makes them once for all parts.
+/// A part of a model from the shape of the whole and from the rows that reach a box. The programs are those
+/// of the whole, so a compiler makes them once for all parts.
 ///
 /// ```
 /// use jbt::remote::{ModelRows, ModelShape, RowSource, from_rows};
@@ -179,8 +179,8 @@ impl ModelPart {
         Ok(sampler.dense(lattice))
     }
 
-    /// The part of a mesh that belongs to a block: see [`Polygonize::block`]. The rows have to be those of the
-    /// block's [bounds](LatticeBlock::bounds) with this reach.
+    /// The part of a mesh that belongs to a block: see [`Polygonize::block`]. The rows have to be those of
+    /// the block's [bounds](LatticeBlock::bounds) with this reach.
     ///
     /// # Errors
     /// The shape has no programs for meshes, or the rows are those of another box. The job has the error

@@ -30,8 +30,8 @@ pub(super) struct PartTable {
     pub(super) whole: Vec<u32>,
     /// Supports, one after the other; none where rows are not left out by them.
     pub(super) supports: Vec<f32>,
-    /// The numbers of the rows in the range program, and in the programs for queries. A program that has those
-    /// of an earlier one has its place instead.
+    /// The numbers of the rows in the range program, and in the programs for queries. A program that has
+    /// those of an earlier one has its place instead.
     pub(super) numbers: Vec<PartNumbers>,
 }
 

@@ -37,8 +37,8 @@ impl PartialEq for ModelShape {
 }
 
 impl ModelShape {
-    /// The shape of a model with these programs. It is read back from its bytes, so whoever reads them has the
-    /// same functions, to the names of their instructions.
+    /// The shape of a model with these programs. It is read back from its bytes, so whoever reads them has
+    /// the same functions, to the names of their instructions.
     pub(super) fn of(
         tree: &CheckedTree,
         formulas: bool,

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::NodeKind;
-use crate::label::Label;
+use crate::label::NodeLabel;
 use crate::report::Report;
 
 /// The name of a node of a checked tree: its index in [`CheckedTree::nodes`](super::CheckedTree::nodes).
@@ -28,7 +28,7 @@ pub struct CheckedNode {
     /// before the block. Errors of the check about any of its numbers have this place.
     pub span: Option<Span>,
     /// What its text says about it besides what it means.
-    pub label: Option<Arc<Label>>,
+    pub label: Option<Arc<NodeLabel>>,
 }
 
 impl CheckedNode {

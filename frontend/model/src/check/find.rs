@@ -3,7 +3,7 @@
 use super::arena::NodeId;
 use super::tree::CheckedTree;
 use crate::diagnostic::Diagnostics;
-use crate::path::{Met, NamedNodes, NodePath, Step, nowhere, search, too_many};
+use crate::path::{MetNode, NamedNodes, NodePath, Step, nowhere, search, too_many};
 
 /// A place in a tree that a path of names leads to.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -48,7 +48,7 @@ impl CheckedTree {
         let mut ways: Vec<Vec<Step<'_>>> = Vec::new();
         // All places of these names, so that it is known where a name alone will do.
         let searched = search(self, self.root(), &path.of_any_place(), true, |met, above, way| {
-            if let Met::Found(node) = met {
+            if let MetNode::Found(node) = met {
                 let above = above.iter().map(|&(node, child)| (node, child as u32)).collect();
                 found.push(FoundNode { node, above, path: String::new() });
                 ways.push(way.to_vec());

@@ -4,7 +4,7 @@ use super::Model;
 use crate::combine::{Combinator, CombinatorKind, Sum};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::field::FieldKind;
-use crate::path::{Met, NamedNodes, NodePath, nowhere, search, too_many};
+use crate::path::{MetNode, NamedNodes, NodePath, nowhere, search, too_many};
 use crate::traverse::Visit;
 use crate::tree::Tree;
 use crate::tree::order::PlainNodes;
@@ -69,12 +69,12 @@ impl Model {
         let mut stack: Vec<Left> = Vec::new();
         let mut count = 0;
         let searched = search(PlainNodes::new(), &self.root, &path, false, |met, _, _| match met {
-            Met::Other => stack.push(other.clone()),
-            Met::Found(_) => {
+            MetNode::Other => stack.push(other.clone()),
+            MetNode::Found(_) => {
                 count += 1;
                 stack.push(found.clone());
             }
-            Met::Left(node) => {
+            MetNode::Left(node) => {
                 let first = stack.len() - node.node().children().len();
                 let children = stack.split_off(first);
                 stack.push(rebuild(node, children));

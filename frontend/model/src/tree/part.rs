@@ -13,7 +13,7 @@ use super::Tree;
 use crate::combine::{Combinator, Union};
 use crate::diagnostic::Span;
 use crate::expression::Formula;
-use crate::label::Label;
+use crate::label::NodeLabel;
 use crate::written::Written;
 
 impl Tree {
@@ -42,8 +42,8 @@ impl Tree {
     #[must_use]
     pub fn part_of(name: &str, trees: Vec<Self>, span: Option<Span>) -> Self {
         let part = Self::assemble(Written::from(Combinator::from(Union {})), trees, span).named(name);
-        let label = part.node().label().map(|label| Label::clone(label)).unwrap_or_default();
-        part.labelled(Some(std::sync::Arc::new(Label { part: true, ..label })))
+        let label = part.node().label().map(|label| NodeLabel::clone(label)).unwrap_or_default();
+        part.labelled(Some(std::sync::Arc::new(NodeLabel { part: true, ..label })))
     }
 
     /// A model of several solids, each of which has a name: membership, volumes, meshes and overlaps can be

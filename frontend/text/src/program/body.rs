@@ -8,7 +8,7 @@ use jbt_ir::limits::MAX_EXPANSION_DEPTH;
 use super::Value;
 use super::call::{CallFrame, CallKey, Remembered};
 use super::definition::ProgramDefinition;
-use super::repeat::Loop;
+use super::repeat::BodyLoop;
 use crate::block::{Begun, NodeFrame, NodeStack};
 use crate::lex::{Place, Token, TokenKind};
 use crate::state::Parser;
@@ -25,7 +25,7 @@ pub(crate) enum BodyKind<'a> {
         back: Place<'a>,
         key: Option<CallKey>,
     },
-    Loop(Box<Loop<'a>>),
+    BodyLoop(Box<BodyLoop<'a>>),
     /// The block of a condition that holds.
     Branch,
 }
@@ -93,7 +93,7 @@ impl<'a> Parser<'a> {
         self.program.visible = frame.visible;
         self.program.calls = frame.around;
         match frame.kind {
-            BodyKind::Loop(_) => self.program.depth -= 1,
+            BodyKind::BodyLoop(_) => self.program.depth -= 1,
             BodyKind::Branch => self.skip_else(),
             BodyKind::Call { definition, back, key } => {
                 self.program.depth -= 1;

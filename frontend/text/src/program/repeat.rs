@@ -40,7 +40,7 @@ impl Turns {
 }
 
 /// A loop.
-pub(crate) struct Loop<'a> {
+pub(crate) struct BodyLoop<'a> {
     variable: &'a str,
     turns: Turns,
     /// How many have begun.
@@ -98,8 +98,8 @@ impl<'a> Parser<'a> {
             return Begun::Nothing;
         }
         self.lexer.jump(body);
-        let made = Loop { variable, turns, begun: 0, body, span };
-        self.open_body(open, span, BodyKind::Loop(Box::new(made)))
+        let made = BodyLoop { variable, turns, begun: 0, body, span };
+        self.open_body(open, span, BodyKind::BodyLoop(Box::new(made)))
     }
 
     /// How many turns the loops of a body have at least, which ends at a place: those whose ranges are plain
@@ -197,7 +197,7 @@ impl<'a> Parser<'a> {
     /// The next turn of a loop, if there is one: its variable has its value, and the cursor is at its body.
     pub(super) fn turn(&mut self, frame: &mut BodyFrame<'a>) -> bool {
         let wrong = self.report.count() > frame.errors;
-        let BodyKind::Loop(made) = &mut frame.kind else { return false };
+        let BodyKind::BodyLoop(made) = &mut frame.kind else { return false };
         // What is wrong once is wrong each time.
         if made.begun as f64 >= made.turns.count() || wrong || self.stopped {
             return false;

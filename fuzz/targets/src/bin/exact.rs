@@ -5,9 +5,9 @@
 //! exact --stride 65537         every 65,537th input, some seconds
 //! ```
 //!
-//! Ops of two operands meet all pairs of 512 special numbers, ops of three operands random triples (`--triples`,
-//! 10^8 with a stride of 1). For transcendentals of one operand it also says the largest error in units of the last
-//! place, against the f64 functions of the standard library.
+//! Ops of two operands meet all pairs of 512 special numbers, ops of three operands random triples
+//! (`--triples`, 10^8 with a stride of 1). For transcendentals of one operand it also says the largest
+//! error in units of the last place, against the f64 functions of the standard library.
 
 #![allow(clippy::print_stdout, reason = "it says what it has found")]
 

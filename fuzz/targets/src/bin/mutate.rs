@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use fastrand::Rng;
-use jbt_targets::{Target, target, targets};
+use jbt_targets::{FuzzTarget, target, targets};
 
 /// What one input may take.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -26,7 +26,7 @@ const MAX_BYTES: usize = 8 << 10;
 const MAX_FAILURES: usize = 5;
 
 /// What a thread is running: since when, for which target.
-type Running = Mutex<Option<(Instant, String, Vec<u8>)>>;
+type RunningInput = Mutex<Option<(Instant, String, Vec<u8>)>>;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wanted: Vec<String> = if names.is_empty() { all } else { names.to_vec() };
     let (next, failures) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let running: Vec<Running> = (0..threads).map(|_| Mutex::new(None)).collect();
+    let running: Vec<RunningInput> = (0..threads).map(|_| Mutex::new(None)).collect();
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let workers: Vec<_> = running
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Ends the process at an input that does not end.
-fn watch(running: &[Running], folder: &Path, is_over: &AtomicBool) {
+fn watch(running: &[RunningInput], folder: &Path, is_over: &AtomicBool) {
     while !is_over.load(Ordering::Relaxed) {
         std::thread::sleep(Duration::from_millis(200));
         for one in running {
@@ -82,7 +82,7 @@ fn watch(running: &[Running], folder: &Path, is_over: &AtomicBool) {
 }
 
 /// Runs a target on changed seeds. How many inputs failed.
-fn fuzz(target: &Target, folder: &Path, lasts: Duration, running: &Running) -> usize {
+fn fuzz(target: &FuzzTarget, folder: &Path, lasts: Duration, running: &RunningInput) -> usize {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
     let mut rng = Rng::with_seed(now);
     let inputs: Vec<Vec<u8>> = fs::read_dir(folder.join(&target.name))

@@ -1,9 +1,9 @@
 //! Writes a folder of seeds and a list of words for each target, from the files of the project:
 //! `seeds FOLDER` makes `FOLDER/<target>/` and `FOLDER/<target>.dict`.
 //!
-//! Seeds are those of `fuzz/seeds`, examples, golden files, scenes of tests and pages, and the samples where they are. Words are those
-//! that several seeds of a target have, and numbers that hurt. Samples are no part of the project, so nothing
-//! that is written here is, either.
+//! Seeds are those of `fuzz/seeds`, examples, golden files, scenes of tests and pages, and the samples
+//! where they are. Words are those that several seeds of a target have, and numbers that hurt. Samples
+//! are no part of the project, so nothing that is written here is, either.
 
 #![allow(clippy::print_stdout, reason = "it says what it has written")]
 

@@ -99,9 +99,9 @@ impl MeshBlock {
     }
 }
 
-/// The mesh of all blocks of a lattice that the surface crosses, in any order. Blocks without a surface may be
-/// left out. If none is left out that has one, the mesh is that of [`extract`](super::super::extract), to the
-/// bit.
+/// The mesh of all blocks of a lattice that the surface crosses, in any order. Blocks without a surface may
+/// be left out. If none is left out that has one, the mesh is that of [`extract`](super::super::extract), to
+/// the bit.
 ///
 /// # Errors
 /// See [`BlockError`].
@@ -145,8 +145,8 @@ pub fn join_blocks(blocks: &[MeshBlock]) -> Result<Mesh, BlockError> {
     Ok(mesh)
 }
 
-/// Adds the creases of a block whose vertices and triangles come behind so many. The sides of all vertices that
-/// it has are there by then.
+/// Adds the creases of a block whose vertices and triangles come behind so many. The sides of all vertices
+/// that it has are there by then.
 fn crease(mesh: &mut Mesh, block: &MeshBlock, before: (u32, usize)) -> Result<(), BlockError> {
     let Mesh { creases, triangles, .. } = mesh;
     creases.append(block.mesh.creases.clone(), before);

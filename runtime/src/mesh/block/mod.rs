@@ -3,12 +3,12 @@
 //! ```text
 //!   +---------+---------+      blocks are cubes of 2^n cells, aligned to multiples of their edge
 //!   |    +----+----+    |      a block sees the cells around it, as far as its reach
-//!   |    |    x----|----x      x  a vertex that another block owns: the triangle has its name,
-//!   +----+----+----+----+         which is its cell in the whole lattice and its place among the cell's vertices
+//!   |    |    x----|----x      x  a vertex of another block: the triangle has its name,
+//!   +----+----+----+----+         its cell in the whole lattice and its place in that cell
 //! ```
 //!
-//! Blocks follow one another in Morton order, as cells do, so the joined mesh has the bytes of the mesh that is
-//! made at once. What a block needs of others it computes by itself:
+//! Blocks follow one another in Morton order, as cells do, so the joined mesh has the bytes of the mesh that
+//! is made at once. What a block needs of others it computes by itself:
 //!
 //! | part of the mesh | cells around the block |
 //! |---|---|
@@ -62,17 +62,17 @@ pub struct VertexName {
 pub struct MeshBlock {
     /// Where it is, in units of blocks.
     pub place: [u32; 3],
-    /// Its vertices and its triangles. An index beyond the vertices is that of a name in [`below`](Self::below),
-    /// which follow the vertices.
+    /// Its vertices and its triangles. An index beyond the vertices is that of a name in
+    /// [`below`](Self::below), which follow the vertices.
     pub mesh: Mesh,
     /// Vertices of other blocks that triangles have.
     pub below: Vec<VertexName>,
-    /// Corners of triangles that show sides of edges, ascending: three times the triangle plus the corner, and
-    /// the number of the side among those of its vertex. The [creases](Mesh::creases) of the block's mesh have
-    /// the sides of its vertices and no corners.
+    /// Corners of triangles that show sides of edges, ascending: three times the triangle plus the corner,
+    /// and the number of the side among those of its vertex. The [creases](Mesh::creases) of the block's mesh
+    /// have the sides of its vertices and no corners.
     pub corners: Vec<[u32; 2]>,
-    /// Vertices that triangles of other blocks may have: those of the last cells along some axis, ascending by
-    /// their index.
+    /// Vertices that triangles of other blocks may have: those of the last cells along some axis, ascending
+    /// by their index.
     pub seams: Vec<(VertexName, u32)>,
     /// Whether the mesh has a rim here, at sides of the lattice.
     pub is_open: bool,
