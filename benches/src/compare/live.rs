@@ -50,6 +50,7 @@ fn settings() -> Polygonize {
         fineness: Fineness::Resolution(CELLS),
         verify: false,
         thin_parts: false,
+        sharp: true,
     }
 }
 
