@@ -20,7 +20,7 @@ use jbt_lower::prune_info::{ContestDifference, DifferenceSide, RowContest};
 use jbt_model::combine::Extreme;
 use rustc_hash::FxHashMap as HashMap;
 
-use super::contest::{MetRow, RowInBox, RowRanges};
+use super::lanes::{MetRow, RowInBox, RowRanges};
 use super::ranges::ProbeRanges;
 use crate::boxes::Box3;
 use crate::error::EvalError;

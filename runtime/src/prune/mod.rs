@@ -25,6 +25,7 @@ mod contest;
 mod cull;
 mod decide;
 mod edit;
+mod lanes;
 mod limit;
 pub(crate) mod program;
 mod ranges;

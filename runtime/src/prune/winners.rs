@@ -19,7 +19,7 @@ use jbt_ir::{RowFunction, Tables};
 use jbt_lower::prune_info::ContestGroup;
 use jbt_model::combine::Extreme;
 
-use super::contest::{MOST_LANES, fill};
+use super::lanes::{MOST_LANES, fill};
 use crate::boxes::Box3;
 use crate::compiler::Compiler;
 use crate::error::EvalError;
@@ -88,8 +88,8 @@ impl WinnerTree {
         })
     }
 
-    /// The positions of the rows that may win in a box, ascending, and the ranges of distances that it took. The positions
-    /// are `None` if they are so many that a pass over all rows is as fast.
+    /// The positions of the rows that may win in a box, ascending, and the ranges of distances that it took.
+    /// The positions are `None` if they are so many that a pass over all rows is as fast.
     pub(super) fn winners(
         &self,
         bounds: &Box3,
