@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::program::{BodyFrame, CallFrame, LocalFrame};
+use super::program::known::{BodyFrame, CallFrame, LocalFrame};
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::Span;
 use jbt_model::tree::Tree;

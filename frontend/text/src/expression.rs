@@ -14,7 +14,7 @@
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
 use super::lex::{COMPARISON, Token, TokenKind};
-use super::program::Value;
+use super::program::known::Value;
 use super::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
 pub use jbt_model::function::Function;

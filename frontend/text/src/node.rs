@@ -6,7 +6,7 @@ use super::block::{Begun, BlockFrame, Head};
 use super::expression::ExpressionPlace;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
-use super::program::Value;
+use super::program::known::Value;
 use super::state::Parser;
 use super::words::{EMPTY, GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
 use jbt_model::combine::CombinatorKind;

@@ -7,7 +7,7 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
 use super::part::PART;
-use super::program::Value;
+use super::program::known::Value;
 use super::state::{Options, Parser};
 use super::texts::Texts;
 use super::words::is_builtin;

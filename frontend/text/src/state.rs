@@ -11,7 +11,7 @@ use super::files::Files;
 use super::hints::foreign_mark;
 use super::import::particles::ParticleOptions;
 use super::lex::{Lexer, Token, TokenKind};
-use super::program::{Program, Value};
+use super::program::known::{Program, Value};
 use super::scope::FormulaScope;
 use super::texts::Texts;
 use jbt_model::attribute::AttributeGroup;
@@ -100,7 +100,7 @@ impl<'a> Parser<'a> {
             parts: Vec::new(),
             ended: false,
             broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
-            program: Program::new(whole, texts, options),
+            program: Program::new(whole, texts, options.files.reader()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Words where a number is expected: names of numbers and of lists, functions, constants.
 
 use super::{ParsedOperand, Stacks, Waiting};
-use crate::program::{COUNT, Value};
+use crate::program::known::{COUNT, Value};
 use crate::scope::FormulaScope;
 use crate::state::Parser;
 use crate::words::{CONSTANTS, constant};

@@ -1,60 +1,14 @@
 //! Open bodies of definitions, loops and conditions, and what waits for a node in them.
 
-use std::rc::Rc;
-use std::sync::Arc;
-
 use jbt_ir::limits::MAX_EXPANSION_DEPTH;
 
-use super::Value;
-use super::call::{CallFrame, CallKey, Remembered};
-use super::definition::ProgramDefinition;
-use super::repeat::BodyLoop;
+use super::known::{BodyFrame, BodyKind, CallFrame, LocalFrame, Remembered, Value};
 use crate::block::{Begun, NodeFrame, NodeStack};
-use crate::lex::{Place, Token, TokenKind};
+use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::LabelCall;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
-
-/// What a body is of.
-pub(crate) enum BodyKind<'a> {
-    /// A definition that is called; where to go on behind it, and what it is known by.
-    Call {
-        definition: Rc<ProgramDefinition<'a>>,
-        back: Place<'a>,
-        key: Option<CallKey>,
-    },
-    BodyLoop(Box<BodyLoop<'a>>),
-    /// The block of a condition that holds.
-    Branch,
-}
-
-/// A body that is being read.
-pub(crate) struct BodyFrame<'a> {
-    pub(super) kind: BodyKind<'a>,
-    /// Its first node on the stack of finished subtrees.
-    pub(crate) first: usize,
-    /// The place of its `{`.
-    pub(crate) open: u32,
-    /// How many arguments and variables there were before it, and which could be seen.
-    locals: usize,
-    visible: usize,
-    /// The calls and loops around it.
-    pub(super) around: Option<Arc<LabelCall>>,
-    /// How many errors there were before it.
-    pub(super) errors: usize,
-}
-
-/// A name that waits for its node.
-pub(crate) struct LocalFrame<'a> {
-    pub(super) name: &'a str,
-    pub(super) span: Span,
-    /// Its first node on the stack of finished subtrees.
-    pub(crate) first: usize,
-    /// Whether the node stays where it is, with its name; else the name stands for it.
-    pub(super) stays: bool,
-}
 
 impl<'a> Parser<'a> {
     /// The frame of a body whose `{` has just been taken.

@@ -6,40 +6,14 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::Value;
-use super::body::BodyKind;
-use super::definition::ProgramDefinition;
+use super::known::{BodyKind, CallFrame, CallKey, Remembered, Value};
 use crate::block::Begun;
 use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
-use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::diagnostic::Diagnostic;
 use jbt_model::label::LabelCall;
 use jbt_model::number::{Number, Step};
 use jbt_model::report::{clip, nearest};
-use jbt_model::tree::Tree;
-
-/// A call whose arguments are being read.
-pub(crate) struct CallFrame<'a> {
-    definition: Rc<ProgramDefinition<'a>>,
-    given: Vec<Option<Value>>,
-    /// The argument that comes next.
-    slot: usize,
-    /// Some argument has been given.
-    begun: bool,
-    /// Some argument has been given by its name.
-    named: bool,
-    pub(super) span: Span,
-    /// The first node of the present argument on the stack of finished subtrees.
-    pub(crate) first: usize,
-}
-
-impl CallFrame<'_> {
-    /// The value of the present argument.
-    pub(super) fn give(&mut self, value: Value) {
-        self.given[self.slot] = Some(value);
-        self.slot += 1;
-    }
-}
 
 /// What follows in a call.
 pub(super) enum Next {
@@ -50,12 +24,6 @@ pub(super) enum Next {
     /// Nothing: there was an error.
     Broken,
 }
-
-/// What an expansion is known by: the number of the definition, and its arguments as words.
-pub(super) type CallKey = (usize, Vec<u64>);
-
-/// The nodes of an expansion.
-pub(super) struct Remembered(pub(super) Arc<[Tree]>);
 
 impl<'a> Parser<'a> {
     /// A call whose name, `start`, has just been taken.

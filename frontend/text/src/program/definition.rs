@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use jbt_ir::limits::MAX_ARGUMENTS;
 
-use super::Value;
-use crate::lex::{Place, Token, TokenKind};
+use super::known::{ProgramDefinition, Value};
+use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
 use crate::words::is_builtin;
 use crate::words::is_reserved;
@@ -16,25 +16,6 @@ use jbt_model::report::clip;
 /// The words of its statements.
 const DEFINE: &str = "def";
 pub(super) const INCLUDE: &str = "include";
-
-/// A definition: what a call of it is expanded to.
-pub(crate) struct ProgramDefinition<'a> {
-    pub(super) name: &'a str,
-    /// Where that stands.
-    pub(super) span: Span,
-    /// Its number, from 0.
-    pub(super) number: usize,
-    /// Their names, and what they are if they are not given.
-    pub(super) arguments: Vec<(&'a str, Option<Value>)>,
-    /// Behind its `{`.
-    pub(super) body: Place<'a>,
-    /// The place of the `{`.
-    pub(super) open: u32,
-    /// The bytes of its body.
-    pub(super) length: usize,
-    /// There are errors in its body, which are told once.
-    pub(super) is_wrong: Cell<bool>,
-}
 
 impl<'a> Parser<'a> {
     /// Whether a word that is next begins a statement of a program. Words are not kept for it: what follows

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use jbt_ir::limits::MAX_INCLUDE_DEPTH;
 
+use super::known::Included;
 use crate::files::NamedFile;
 use crate::lex::{Place, Token, TokenKind};
 use crate::state::Parser;
@@ -14,12 +15,6 @@ use jbt_model::label::LabelCall;
 use jbt_model::report::clip;
 use jbt_model::tree::Tree;
 use jbt_model::word::normalized;
-
-/// A file that has been read.
-pub(super) struct Included {
-    /// Its node, if it has one.
-    root: Option<Tree>,
-}
 
 impl<'a> Parser<'a> {
     /// Whether a word that has just been taken begins a file where a node stands.

@@ -13,17 +13,10 @@
 //! [`MAX_INCLUDE_DEPTH`](jbt_ir::limits::MAX_INCLUDE_DEPTH) at most. What an expansion will read is charged
 //! before it begins, to the bytes that one scene may have: a scene is never longer than the longest text.
 
-use std::collections::HashMap;
-use std::rc::Rc;
-use std::sync::Arc;
-
 use jbt_ir::limits::{EXPANSION_BYTES, MAX_SCENE_BYTES};
 
-use super::files::FileReader;
-use super::state::{Options, Parser};
-use super::texts::Texts;
+use super::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
-use jbt_model::label::LabelCall;
 use jbt_model::number::Number;
 use jbt_model::parameter::Fixture;
 use jbt_model::tree::Tree;
@@ -32,133 +25,9 @@ mod body;
 mod call;
 mod definition;
 mod include;
+pub(super) mod known;
 mod repeat;
 mod value;
-
-pub(super) use body::{BodyFrame, BodyKind, LocalFrame};
-pub(super) use call::CallFrame;
-use call::Remembered;
-use definition::ProgramDefinition;
-use include::Included;
-pub(super) use value::COUNT;
-
-/// What a name stands for.
-#[derive(Clone, Debug)]
-pub(super) enum Value {
-    Number(Number),
-    /// A vector, or a colour.
-    Numbers(Arc<[Number]>),
-    List(Arc<[Value]>),
-    Tree(Tree),
-}
-
-impl Value {
-    /// What could not be read.
-    pub(super) fn unknown() -> Self {
-        Self::Number(f64::NAN.into())
-    }
-
-    /// In words.
-    pub(super) fn kind(&self) -> &'static str {
-        match self {
-            Self::Number(_) => "a number",
-            Self::Numbers(_) => "a vector",
-            Self::List(_) => "a list",
-            Self::Tree(_) => "a node",
-        }
-    }
-
-    /// The elements of a list or of a vector, each a value.
-    pub(super) fn elements(&self) -> Option<Vec<Self>> {
-        match self {
-            Self::Number(_) | Self::Tree(_) => None,
-            Self::Numbers(numbers) => Some(numbers.iter().cloned().map(Self::Number).collect()),
-            Self::List(list) => Some(list.to_vec()),
-        }
-    }
-}
-
-/// What a program has defined, and how much it may expand.
-pub(super) struct Program<'a> {
-    pub(super) texts: &'a Texts,
-    files: FileReader,
-    /// Files that have been included, by their identity.
-    included: HashMap<String, Included>,
-    /// Those that are being read, each in the one before it: identities and paths.
-    open: Vec<(String, String)>,
-    definitions: HashMap<&'a str, Rc<ProgramDefinition<'a>>>,
-    /// What has been expanded for which arguments.
-    remembered: HashMap<call::CallKey, Remembered>,
-    /// Values that have a name everywhere below.
-    values: HashMap<&'a str, Value>,
-    /// Arguments and variables, those of the innermost body last.
-    locals: Vec<(&'a str, Value)>,
-    /// The first of them that can be seen: a definition does not see those of its callers.
-    visible: usize,
-    /// The calls and loops around what is read.
-    pub(super) calls: Option<Arc<LabelCall>>,
-    /// How many bodies are open.
-    depth: usize,
-    /// Where blocks end that have been looked at, by where they begin.
-    ends: HashMap<usize, usize>,
-    /// Bytes of text that may still be read.
-    left: usize,
-    /// Something has been expanded.
-    pub(super) has_expanded: bool,
-}
-
-impl<'a> Program<'a> {
-    pub(super) fn new(whole: &str, texts: &'a Texts, options: &Options) -> Self {
-        Self {
-            texts,
-            files: options.files.reader(),
-            included: HashMap::new(),
-            open: Vec::new(),
-            definitions: HashMap::new(),
-            remembered: HashMap::new(),
-            values: HashMap::new(),
-            locals: Vec::new(),
-            visible: 0,
-            calls: None,
-            depth: 0,
-            ends: HashMap::new(),
-            left: MAX_SCENE_BYTES.saturating_sub(whole.len()),
-            has_expanded: false,
-        }
-    }
-
-    /// What a name stands for, if it is an argument, a variable, or a value with a name.
-    pub(super) fn value(&self, name: &str) -> Option<&Value> {
-        let locals = self.locals[self.visible..].iter().rev();
-        locals.into_iter().find(|(local, _)| *local == name).map(|(_, value)| value).or_else(|| {
-            // Most texts have none.
-            if self.values.is_empty() { None } else { self.values.get(name) }
-        })
-    }
-
-    /// The names of values that can be seen.
-    pub(super) fn value_names(&self) -> impl Iterator<Item = &str> {
-        self.locals[self.visible..].iter().map(|(name, _)| *name).chain(self.values.keys().copied())
-    }
-
-    /// Gives a value a name everywhere below. Whether it had one already.
-    pub(super) fn define(&mut self, name: &'a str, value: Value) -> bool {
-        self.values.insert(name, value).is_some()
-    }
-
-    fn bind(&mut self, name: &'a str, value: Value) {
-        self.locals.push((name, value));
-    }
-
-    /// The names of definitions.
-    pub(super) fn definition_names(&self) -> impl Iterator<Item = &str> {
-        self.definitions.keys().copied()
-    }
-
-    pub(super) fn defines(&self, name: &str) -> bool {
-        !self.definitions.is_empty() && self.definitions.contains_key(name)
-    }
-}
 
 impl<'a> Parser<'a> {
     /// Whether what is read stands in a file that the scene includes.

@@ -9,10 +9,10 @@
 
 use std::sync::Arc;
 
-use super::{BodyFrame, BodyKind, Value};
+use super::known::{BodyFrame, BodyKind, BodyLoop, Turns, Value};
 use crate::block::Begun;
 use crate::expression::{ExpressionPlace, ParsedOperand};
-use crate::lex::{COMPARISON, Place, RANGE, Token, TokenKind};
+use crate::lex::{COMPARISON, RANGE, Token, TokenKind};
 use crate::state::Parser;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::label::{CallTurn, LabelCall};
@@ -21,34 +21,6 @@ use jbt_model::label::{CallTurn, LabelCall};
 pub(super) const FOR: &str = "for";
 pub(super) const IF: &str = "if";
 const ELSE: &str = "else";
-
-/// The values of a loop's variable.
-pub(crate) enum Turns {
-    /// So many numbers: any whole one that is not negative, also infinity.
-    Numbers { first: f64, step: f64, count: f64 },
-    /// The elements of a list.
-    Elements(Vec<Value>),
-}
-
-impl Turns {
-    fn count(&self) -> f64 {
-        match self {
-            Self::Numbers { count, .. } => *count,
-            Self::Elements(elements) => elements.len() as f64,
-        }
-    }
-}
-
-/// A loop.
-pub(crate) struct BodyLoop<'a> {
-    variable: &'a str,
-    turns: Turns,
-    /// How many have begun.
-    begun: usize,
-    body: Place<'a>,
-    /// Its words before the block.
-    span: Span,
-}
 
 impl<'a> Parser<'a> {
     /// Whether the word that has just been taken begins a loop.

@@ -8,7 +8,7 @@
 
 use jbt_ir::limits::{MAX_LIST_DEPTH, MAX_SKELETON_POINTS};
 
-use super::Value;
+use super::known::{COUNT, Value};
 use crate::expression::{ExpressionPlace, ParsedOperand};
 use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
@@ -19,9 +19,6 @@ use jbt_model::function::Function;
 use jbt_model::number::Number;
 use jbt_model::report::clip;
 use jbt_model::word::is_statement;
-
-/// The word for the number of a list's elements.
-pub(crate) const COUNT: &str = "count";
 
 impl<'a> Parser<'a> {
     /// Whether what is next is a value and no node.

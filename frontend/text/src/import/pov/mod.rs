@@ -39,14 +39,15 @@ mod scan;
 mod scene;
 mod script;
 mod shape;
+mod texts;
 mod transform;
 
 use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics};
 use jbt_model::model::Model;
 
-use self::include::PovTexts;
 use self::script::Script;
+use self::texts::PovTexts;
 use super::Imported;
 use super::format::SceneFormatRow;
 use crate::Options;

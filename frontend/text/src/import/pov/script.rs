@@ -8,10 +8,10 @@ use jbt_ir::limits::{MAX_BLOCK_DEPTH, MAX_SCRIPT_STEPS};
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::{Amount, Streams, vector};
-use super::include::{PovReturn, PovTexts};
 use super::open::{PovBlock, PovFrame};
 use super::scan::PovScanner;
 use super::shape::PovShapes;
+use super::texts::{PovReturn, PovTexts};
 use crate::import::tally::LeftOut;
 
 /// What a name stands for.
