@@ -23,7 +23,7 @@ pub use tools::{
     CheckArguments, CompletionsArguments, ConvertArguments, CountArguments, DiffArguments, ManArguments,
     ShowArguments, StatsArguments,
 };
-pub use wanted::Wanted;
+pub use wanted::WantedAnswers;
 use wanted::WantedParser;
 pub use work::WorkArguments;
 
@@ -276,7 +276,7 @@ pub struct SampleArguments {
     pub output: OutputArguments<ArrayKind>,
     /// The answers wanted, and names of attribute groups if not all are: field,color
     #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
-    pub query: Wanted,
+    pub query: WantedAnswers,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -296,7 +296,7 @@ pub struct EvalArguments {
     pub points: PathBuf,
     /// The answers wanted, and names of attribute groups if not all are: field,color
     #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
-    pub query: Wanted,
+    pub query: WantedAnswers,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,

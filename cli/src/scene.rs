@@ -7,7 +7,7 @@ use jbt::diagnostic::{Diagnostic, Severity, SourceText};
 use jbt::text::files::Files;
 use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query, SceneFolder};
 
-use crate::arguments::{PartArguments, SceneArguments, Wanted};
+use crate::arguments::{PartArguments, SceneArguments, WantedAnswers};
 use crate::failure::Failure;
 use crate::message::Message;
 use crate::output::{highlight, tell};
@@ -91,7 +91,7 @@ impl LoadedScene {
     }
 
     /// The checked model, as far as something is wanted of it.
-    pub fn check_for(&self, wanted: &Wanted) -> Result<CheckedTree, Failure> {
+    pub fn check_for(&self, wanted: &WantedAnswers) -> Result<CheckedTree, Failure> {
         wanted.of(self.check()?).map_err(|error| {
             let words = |one: &Diagnostic| {
                 let help = one.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));

@@ -24,7 +24,7 @@ const BRACES: &str = "{}";
 
 /// A file of a sequence.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
-struct Frame {
+struct SequenceFrame {
     number: u64,
     /// The number as it is written, with its zeros.
     digits: String,
@@ -44,14 +44,14 @@ pub fn run(arguments: &MeshArguments, quiet: bool) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("{name} is a sequence: its results need {BRACES} in -o, too")));
     };
     let frames = frames(scene)?;
-    let (done, left): (Vec<&Frame>, Vec<&Frame>) =
+    let (done, left): (Vec<&SequenceFrame>, Vec<&SequenceFrame>) =
         frames.iter().partition(|frame| !arguments.output.force && is_done(scene, out, frame));
     if !done.is_empty() && !quiet {
         let count = plural(done.len() as u64, "frame is", "frames are");
         warn(&format!("{count} newer than the scene, and passed over; --force makes all of them"));
     }
     let program = std::env::current_exe().map_err(|error| Failure::io("find", "this program", error))?;
-    let (next, told) = (AtomicUsize::new(0), Mutex::new(Told::default()));
+    let (next, told) = (AtomicUsize::new(0), Mutex::new(FramesTold::default()));
     std::thread::scope(|scope| {
         for _ in 0..usize::from(arguments.jobs).min(left.len()) {
             scope.spawn(|| {
@@ -73,12 +73,12 @@ pub fn run(arguments: &MeshArguments, quiet: bool) -> Result<(), Failure> {
 
 /// What frames have told so far.
 #[derive(Default)]
-struct Told {
+struct FramesTold {
     /// The exit code of the first one that failed.
     code: Option<u8>,
 }
 
-impl Told {
+impl FramesTold {
     fn tell(&mut self, frame: &Path, result: io::Result<Output>) {
         let code = match result {
             Ok(Output { status, stdout, stderr }) => {
@@ -100,7 +100,7 @@ impl Told {
 }
 
 /// The command line of this process, for one frame.
-fn command(program: &Path, frame: &Frame) -> Command {
+fn command(program: &Path, frame: &SequenceFrame) -> Command {
     let mut command = Command::new(program);
     let mut arguments = std::env::args_os().skip(1);
     while let Some(argument) = arguments.next() {
@@ -114,19 +114,19 @@ fn command(program: &Path, frame: &Frame) -> Command {
 }
 
 /// A text with the number of a frame in place of braces.
-fn with_number(text: &OsStr, frame: &Frame) -> OsString {
+fn with_number(text: &OsStr, frame: &SequenceFrame) -> OsString {
     match text.to_str() {
         Some(text) => text.replace(BRACES, &frame.digits).into(),
         None => text.to_owned(),
     }
 }
 
-fn numbered(path: &Path, frame: &Frame) -> PathBuf {
+fn numbered(path: &Path, frame: &SequenceFrame) -> PathBuf {
     with_number(path.as_os_str(), frame).into()
 }
 
 /// The files of a sequence, by their numbers.
-fn frames(scene: &Path) -> Result<Vec<Frame>, Failure> {
+fn frames(scene: &Path) -> Result<Vec<SequenceFrame>, Failure> {
     let name = scene.file_name().and_then(OsStr::to_str).unwrap_or_default();
     let (before, after) = name.split_once(BRACES).unwrap_or((name, ""));
     if after.contains(BRACES) {
@@ -143,7 +143,7 @@ fn frames(scene: &Path) -> Result<Vec<Frame>, Failure> {
             continue;
         };
         if let Ok(number) = digits.parse() {
-            frames.push(Frame { number, digits: digits.to_owned() });
+            frames.push(SequenceFrame { number, digits: digits.to_owned() });
         }
     }
     frames.sort();
@@ -155,7 +155,7 @@ fn frames(scene: &Path) -> Result<Vec<Frame>, Failure> {
 }
 
 /// Whether the result of a frame is there, and newer than its scene.
-fn is_done(scene: &Path, out: &Path, frame: &Frame) -> bool {
+fn is_done(scene: &Path, out: &Path, frame: &SequenceFrame) -> bool {
     let changed = |path: &Path| fs::metadata(numbered(path, frame)).and_then(|file| file.modified());
     matches!((changed(scene), changed(out)), (Ok(scene), Ok(out)) if out >= scene)
 }

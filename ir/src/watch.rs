@@ -37,15 +37,15 @@ thread_local! {
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
-type Place = LocalKey<RefCell<Option<Watch>>>;
+type WatchPlace = LocalKey<RefCell<Option<Watch>>>;
 
 /// Work was stopped by its watch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stopped;
 
 /// Does work with a watch in a place. The one before comes back in the end.
-fn with<T>(place: &'static Place, watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
-    struct WatchBefore(&'static Place, Option<Watch>);
+fn with<T>(place: &'static WatchPlace, watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
+    struct WatchBefore(&'static WatchPlace, Option<Watch>);
     impl Drop for WatchBefore {
         fn drop(&mut self) {
             self.0.set(self.1.take());

@@ -6,7 +6,7 @@ use clap::Args;
 use clap_complete::Shell;
 use jbt::{Query, SceneFormat};
 
-use super::wanted::{Wanted, WantedParser};
+use super::wanted::{WantedAnswers, WantedParser};
 use super::words::positive;
 use super::words::queries;
 use super::{LatticeArguments, LevelName, OutputArguments, SceneArguments, SceneOptions};
@@ -31,7 +31,7 @@ pub struct ShowArguments {
     pub stage: String,
     /// The answers that the program gives, and names of attribute groups if not all are wanted
     #[arg(long, default_value_t = Query::ALL.into(), value_parser = WantedParser)]
-    pub query: Wanted,
+    pub query: WantedAnswers,
     /// Show the straight code of formulas that have much in common: what points anywhere run, while regions
     /// run rows
     #[arg(long)]

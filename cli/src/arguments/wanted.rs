@@ -8,14 +8,14 @@ use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
 /// Answers, and the groups of attributes among them if not all are wanted.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Wanted {
+pub struct WantedAnswers {
     /// The answers.
     pub query: Query,
     /// The groups; nothing for all of them.
     groups: Option<Vec<String>>,
 }
 
-impl Wanted {
+impl WantedAnswers {
     /// Words with commas between: those of queries, and names of groups.
     fn parse(text: &str) -> Self {
         let mut wanted = Self { query: Query::FIELD, groups: None };
@@ -48,13 +48,13 @@ impl Wanted {
     }
 }
 
-impl From<Query> for Wanted {
+impl From<Query> for WantedAnswers {
     fn from(query: Query) -> Self {
         Self { query, groups: None }
     }
 }
 
-impl fmt::Display for Wanted {
+impl fmt::Display for WantedAnswers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.query.fmt(f)
     }
@@ -65,16 +65,16 @@ impl fmt::Display for Wanted {
 pub struct WantedParser;
 
 impl TypedValueParser for WantedParser {
-    type Value = Wanted;
+    type Value = WantedAnswers;
 
     fn parse_ref(
         &self,
         command: &clap::Command,
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
-    ) -> Result<Wanted, clap::Error> {
+    ) -> Result<WantedAnswers, clap::Error> {
         let text = clap::builder::StringValueParser::new().parse_ref(command, argument, value)?;
-        Ok(Wanted::parse(&text))
+        Ok(WantedAnswers::parse(&text))
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn words_and_names() {
         let wanted = |text: &str| {
-            let Wanted { query, groups } = Wanted::parse(text);
+            let WantedAnswers { query, groups } = WantedAnswers::parse(text);
             (query, groups.map(|groups| groups.join(" ")))
         };
         assert_eq!(wanted("field"), (Query::FIELD, None));

@@ -7,7 +7,8 @@ use std::process::Stdio;
 
 use crate::work::{JBT, Room, code, example, examples, told, wanted};
 
-/// Runs a program whose memory the system never makes executable once it was not, nor writable and executable.
+/// Runs a program whose memory the system never makes executable once it was not, nor writable and
+/// executable.
 const DENY: &str = "import ctypes, os, sys
 if ctypes.CDLL(None, use_errno=True).prctl(65, 1, 0, 0, 0): sys.exit(77)
 os.execv(sys.argv[1], sys.argv[1:])";

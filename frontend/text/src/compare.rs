@@ -58,18 +58,19 @@ pub fn compare(first: &Model, second: &Model) -> Vec<ModelDifference> {
     };
     found.extend(only(&a, &b).into_iter().map(|one| statement(Some(one), None)));
     found.extend(only(&b, &a).into_iter().map(|one| statement(None, Some(one))));
-    let search = Search { hashes: [hashes(&first.root), hashes(&second.root)], seen: HashSet::new() };
+    let search =
+        ModelComparison { hashes: [hashes(&first.root), hashes(&second.root)], seen: HashSet::new() };
     search.run(&first.root, &second.root, &mut found);
     found
 }
 
-struct Search {
+struct ModelComparison {
     hashes: [HashMap<usize, ModelHash>; 2],
     /// Pairs that have been compared: shared subtrees differ once.
     seen: HashSet<(usize, usize)>,
 }
 
-impl Search {
+impl ModelComparison {
     fn run(mut self, first: &Tree, second: &Tree, found: &mut Vec<ModelDifference>) {
         let mut stack = vec![(Some(first), Some(second), word(first))];
         while let Some((a, b, path)) = stack.pop() {

@@ -11,7 +11,7 @@ use super::files::Files;
 use super::hints::foreign_mark;
 use super::import::particles::ParticleOptions;
 use super::lex::{Lexer, Token, TokenKind};
-use super::program::known::{Program, Value};
+use super::program::known::{TextProgram, Value};
 use super::scope::FormulaScope;
 use super::texts::Texts;
 use jbt_model::attribute::AttributeGroup;
@@ -73,7 +73,7 @@ pub(super) struct Parser<'a> {
     /// Stands for every node that could not be read.
     pub(super) broken: Tree,
     /// Names of values, definitions, files, and what may still be expanded.
-    pub(super) program: Program<'a>,
+    pub(super) program: TextProgram<'a>,
 }
 
 impl<'a> Parser<'a> {
@@ -100,7 +100,7 @@ impl<'a> Parser<'a> {
             parts: Vec::new(),
             ended: false,
             broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
-            program: Program::new(whole, texts, options.files.reader()),
+            program: TextProgram::new(whole, texts, options.files.reader()),
         }
     }
 

@@ -13,9 +13,10 @@
 //! fold          its accumulators carry their signatures, 0 where rows of 0 may be left out and all are 0
 //! ```
 //!
-//! The number of a marked op is made of its place in the function, and of the numbers of the rows around it,
-//! so a union of rows tells which row wins. What is 0 or loses has no part in the signature. So rows that may
-//! be left out in a box change nothing, and operands that are not rounded by a smooth union count for nothing.
+//! The number of a marked op is made of its place in the function, and of the numbers of the rows around
+//! it, so a union of rows tells which row wins. What is 0 or loses has no part in the signature. So rows
+//! that may be left out in a box change nothing, and operands that are not rounded by a smooth union count
+//! for nothing.
 //!
 //! A function without marked ops has no signature.
 

@@ -8,8 +8,8 @@
 //! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! `decisions`, `gradient`, `guarded-gradient` and `interval` change what is computed. So they are not in the list: the
-//! caller puts one of them in front, by what the program is for: `run_pipeline(f,
+//! `decisions`, `gradient`, `guarded-gradient` and `interval` change what is computed. So they are not in
+//! the list: the caller puts one of them in front, by what the program is for: `run_pipeline(f,
 //! [&GRADIENT].into_iter().chain(PIPELINE), ..)`. They need the transcendentals whole, hence before
 //! `legalize`. Straight code is made behind them.
 //!

@@ -60,8 +60,8 @@ impl Compiled {
     pub fn too_large_for(&self, tasks: &[Task]) -> Result<Vec<(Task, CompileError)>, CompileError> {
         jbt_ir::watch::stoppable(|| {
             let lowering = Lowering::with(self.tree(), &PoolWorkers);
-            // The program for all answers is the longest that lowering makes, but for that of ranges, which is
-            // a few times that for the field.
+            // The program for all answers is the longest that lowering makes, but for that of ranges, which
+            // is a few times that for the field.
             let longest = self.lowered(Some(&lowering), |lowering| lowering.answers(Query::ALL))?;
             if longest.function.values.len() <= MAX_VALUES / LARGEST_GROWTH / RANGES_GROWTH {
                 return Ok(Vec::new());

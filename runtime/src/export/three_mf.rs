@@ -1,8 +1,9 @@
 //! 3MF: the core specification 1.3 and colour groups of its materials extension, in an archive.
 //!
 //! Every vertex of a triangle has a colour of the one group, which has each colour of the mesh once, in the
-//! order of its bytes. With a palette there are so many base materials instead, and each triangle is of one:
-//! borders are crisp, for printers with so many materials. A mesh without triangles is a file without objects, as an object has to have some.
+//! order of its bytes. With a palette there are so many base materials instead, and each triangle is of
+//! one: borders are crisp, for printers with so many materials. A mesh without triangles is a file without
+//! objects, as an object has to have some.
 
 use std::io::Write;
 

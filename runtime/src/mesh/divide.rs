@@ -114,8 +114,8 @@ struct BrickDivider<'a, 'hook, F: Field> {
     progress: &'a Progress<'hook>,
 }
 
-/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept. What
-/// is out of the scope is not looked at.
+/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept.
+/// What is out of the scope is not looked at.
 pub(crate) fn divide<F: Field>(
     field: &F,
     axes: [Vec<f32>; 3],

@@ -37,7 +37,7 @@ const HIGH: u8 = 2;
 
 /// A brick that may own the points of a class: its direction, and the class of the points in it.
 #[derive(Clone, Copy)]
-struct Candidate {
+struct ClassOwner {
     direction: u8,
     kinds: Kinds,
 }
@@ -47,7 +47,7 @@ struct Candidate {
 struct Class {
     kinds: Kinds,
     /// In the order of preference, up to the brick itself.
-    candidates: [Candidate; 8],
+    candidates: [ClassOwner; 8],
     count: usize,
     /// The directions of all candidates but the brick itself, a bit each.
     before: u32,
@@ -55,7 +55,7 @@ struct Class {
 
 /// All classes; that of kinds `(a, b, c)` is `a + 3 b + 9 c`.
 static CLASSES: [Class; 27] = {
-    let itself = Candidate { direction: SELF as u8, kinds: [LOW; 3] };
+    let itself = ClassOwner { direction: SELF as u8, kinds: [LOW; 3] };
     let empty = Class { kinds: [LOW; 3], candidates: [itself; 8], count: 0, before: 0 };
     let mut classes = [empty; 27];
     let mut number = 0;
@@ -86,7 +86,7 @@ const fn class(kinds: Kinds, empty: Class) -> Class {
         }
         if exists {
             let direction = direction(steps);
-            class.candidates[class.count] = Candidate { direction: direction as u8, kinds: seen };
+            class.candidates[class.count] = ClassOwner { direction: direction as u8, kinds: seen };
             class.count += 1;
             if direction == SELF {
                 break;
@@ -316,7 +316,7 @@ impl BrickSamples {
     fn class(&self, bricks: &Bricks, brick: usize, class: usize) -> BlockLayout {
         let Class { candidates, count, .. } = &CLASSES[class];
         let neighbours = &bricks.neighbours[brick];
-        let is_there = |candidate: &&Candidate| neighbours[usize::from(candidate.direction)] != NONE;
+        let is_there = |candidate: &&ClassOwner| neighbours[usize::from(candidate.direction)] != NONE;
         let owner = candidates[..*count].iter().find(is_there).expect("a brick is there for itself");
         let other = neighbours[usize::from(owner.direction)] as usize;
         let extent = bricks.extent(other);

@@ -1,9 +1,9 @@
-//! Meshes of fewer triangles, by meshoptimizer (Kapoulkine 2016-2026): edges are collapsed while the quadratic
-//! error is small (Garland and Heckbert 1997).
+//! Meshes of fewer triangles, by meshoptimizer (Kapoulkine 2016-2026): edges are collapsed while the
+//! quadratic error is small (Garland and Heckbert 1997).
 //!
 //! Vertices of the result are vertices of the mesh, with their normals and attributes, so nothing is
-//! interpolated. Collapses keep what is closed closed. Borders of colours and creases count as errors, so they
-//! are what stays longest.
+//! interpolated. Collapses keep what is closed closed. Borders of colours and creases count as errors, so
+//! they are what stays longest.
 
 use meshopt::{SimplifyOptions, VertexDataAdapter, simplify_with_attributes_and_locks};
 

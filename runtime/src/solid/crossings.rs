@@ -74,7 +74,7 @@ struct LineLattice<'a> {
 }
 
 /// A segment that the surface crosses.
-struct Crossing {
+struct SolidCrossing {
     axis: usize,
     /// Its ends, which differ along the axis alone: the one inside, the one outside.
     ends: [[f32; 3]; 2],
@@ -89,7 +89,7 @@ struct Crossing {
     segment: [f64; 2],
 }
 
-impl Crossing {
+impl SolidCrossing {
     fn new(axis: usize, ends: [[f32; 3]; 2], values: [f32; 2]) -> Self {
         let segment = ends.map(|end| f64::from(end[axis]));
         Self { axis, ends, values, place: segment[0], is_wall: false, weight: 1.0, segment }
@@ -161,7 +161,7 @@ impl LineLattice<'_> {
 
     /// The crossed segments, and how much of the lines is inside, in sides of the box, where a crossed
     /// segment counts as half.
-    fn crossings(&self) -> Result<(Vec<Crossing>, f64), EvalError> {
+    fn crossings(&self) -> Result<(Vec<SolidCrossing>, f64), EvalError> {
         let mut batch = SolidBatch::default();
         for axis in 0..3 {
             let across = [(axis + 1) % 3, (axis + 2) % 3];
@@ -193,7 +193,7 @@ impl LineLattice<'_> {
                 if is_crossed(low) {
                     let ends = if is_inside(low) { [low, low + 1] } else { [low + 1, low] };
                     let (points, fields) = (ends.map(|n| batch.point(n)), ends.map(|n| values[n]));
-                    let mut crossing = Crossing::new(axis, points, fields);
+                    let mut crossing = SolidCrossing::new(axis, points, fields);
                     // The other half of the segment of twice the length.
                     let other = line * PLACES + (segment ^ 1);
                     crossing.weight = if is_crossed(other) { 2.0 } else { 1.0 };
@@ -205,7 +205,7 @@ impl LineLattice<'_> {
     }
 
     /// The unit normal at each crossing: of the gradient, or of the wall.
-    fn normals_at(&self, crossings: &[Crossing]) -> Result<Vec<[f64; 3]>, EvalError> {
+    fn normals_at(&self, crossings: &[SolidCrossing]) -> Result<Vec<[f64; 3]>, EvalError> {
         let mut batch = SolidBatch::default();
         crossings.iter().for_each(|crossing| batch.push(crossing.point(crossing.place)));
         let mut planes = [0; 4].map(|_| vec![0.0_f32; crossings.len()]);
@@ -237,7 +237,7 @@ impl LineLattice<'_> {
     /// along this axis, beside the crossing, meet the wall at places whose differences are its slopes.
     fn wall_normal(
         &self,
-        crossing: &Crossing,
+        crossing: &SolidCrossing,
         around: &mut Option<Region>,
     ) -> Result<Option<[f64; 3]>, EvalError> {
         let reach = self.reach();
@@ -269,7 +269,7 @@ impl LineLattice<'_> {
             let (inner, outer) = (2 * line, 2 * line + 1);
             if inside(inner) && !inside(outer) {
                 let ends = [inner, outer];
-                lines.push(Crossing::new(axis, ends.map(|n| batch.point(n)), ends.map(|n| values[n])));
+                lines.push(SolidCrossing::new(axis, ends.map(|n| batch.point(n)), ends.map(|n| values[n])));
                 which.push(line);
             }
         }
@@ -319,7 +319,7 @@ impl LineLattice<'_> {
 
 /// Finds where segments are crossed. Where the surface is not where a linear field has it, or the field
 /// jumps, segments are halved.
-fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<(), EvalError> {
+fn locate(solid: &Solid, region: &Region, crossings: &mut [SolidCrossing]) -> Result<(), EvalError> {
     let mut batch = SolidBatch::default();
     for crossing in &mut *crossings {
         let part = crossing.linear(solid.iso);
@@ -333,7 +333,7 @@ fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<
     }
     let values = batch.values(solid, region)?;
     let pairs = crossings.iter_mut().zip(values.chunks_exact(2));
-    let is_near = |crossing: &Crossing, [inner, outer]: [f32; 2]| {
+    let is_near = |crossing: &SolidCrossing, [inner, outer]: [f32; 2]| {
         inner >= solid.iso && outer < solid.iso && inner - outer < NEAR_RISE * crossing.rise()
     };
     let far = pairs.filter(|(crossing, near)| !is_near(crossing, [near[0], near[1]]));
@@ -341,7 +341,7 @@ fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<
 }
 
 /// Halves segments towards their crossings, and tells walls.
-fn halve(solid: &Solid, region: &Region, crossings: &mut [&mut Crossing]) -> Result<(), EvalError> {
+fn halve(solid: &Solid, region: &Region, crossings: &mut [&mut SolidCrossing]) -> Result<(), EvalError> {
     let mut batch = SolidBatch::default();
     let mut noted = Vec::new();
     for halving in 0..if crossings.is_empty() { 0 } else { HALVINGS } {

@@ -27,7 +27,7 @@ const SHARED: [(&str, &[(&str, usize)]); 5] = [
         ("Arguments", 2), ("Binary", 2), ("Block", 2), ("Code", 2), ("Decision", 2), ("Event", 2),
         ("Extent", 2), ("Field", 2), ("Fold", 2), ("Form", 2), ("Frame", 2), ("Function", 2), ("Job", 2),
         ("Key", 3), ("Member", 2), ("Number", 2), ("Operand", 4), ("Pattern", 2), ("Pieces", 2),
-        ("Planes", 2), ("Probe", 2), ("Range", 2), ("Rows", 2), ("Scene", 2), ("Source", 2), ("Tape", 2), ("Vector", 3),
+        ("Planes", 2), ("Probe", 2), ("Range", 2), ("Rows", 2), ("Scene", 2), ("Source", 2), ("Tape", 2), ("Task", 2), ("Vector", 3), ("Watch", 2),
         ("Writer", 2), ("Written", 3),
     ]),
 ];

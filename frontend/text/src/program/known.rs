@@ -56,7 +56,7 @@ impl Value {
 }
 
 /// What a program has defined, and how much it may expand.
-pub(crate) struct Program<'a> {
+pub(crate) struct TextProgram<'a> {
     pub(crate) texts: &'a Texts,
     pub(super) files: FileReader,
     /// Files that have been included, by their identity.
@@ -84,7 +84,7 @@ pub(crate) struct Program<'a> {
     pub(crate) has_expanded: bool,
 }
 
-impl<'a> Program<'a> {
+impl<'a> TextProgram<'a> {
     pub(crate) fn new(whole: &str, texts: &'a Texts, files: FileReader) -> Self {
         Self {
             texts,

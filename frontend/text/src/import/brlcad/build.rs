@@ -141,7 +141,7 @@ enum BuildTask {
 }
 
 /// A message about several places: the first one, and how many there are.
-struct Note {
+struct SolidNote {
     span: Span,
     message: String,
     count: usize,
@@ -155,7 +155,7 @@ struct TreeBuilder<'a, 'b> {
     /// The combinations that are open, from the root down.
     path: Vec<u32>,
     nodes: usize,
-    notes: Vec<Note>,
+    notes: Vec<SolidNote>,
     noted: HashMap<String, usize>,
     has_colors: bool,
 }
@@ -387,14 +387,14 @@ impl TreeBuilder<'_, '_> {
         let next = self.notes.len();
         let at = *self.noted.entry(message.to_owned()).or_insert(next);
         if at == next {
-            self.notes.push(Note { span, message: format!("{path}: {message}"), count: 0 });
+            self.notes.push(SolidNote { span, message: format!("{path}: {message}"), count: 0 });
         }
         self.notes[at].count += 1;
     }
 
     /// Makes warnings of the notes.
     fn note(&mut self) {
-        for Note { span, message, count } in std::mem::take(&mut self.notes) {
+        for SolidNote { span, message, count } in std::mem::take(&mut self.notes) {
             self.database.warnings.add(|| {
                 let more = count - 1;
                 let others = if more == 0 { String::new() } else { format!(", and {more} more like it") };

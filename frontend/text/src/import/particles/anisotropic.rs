@@ -11,9 +11,9 @@
 //! strength     1 / (a_1 a_2 a_3), so that each holds as much as before
 //! ```
 //!
-//! The paper's constant 1400 is for its units; 0.15 R^2 is the variance of a full neighbourhood, whose point
-//! stays a ball of its size. Axes go with the eigenvalues, as in the paper, and not with their roots. Sums are
-//! in f64 and in a fixed order, so the same file gives the same bits.
+//! The paper's constant 1400 is for its units; 0.15 R^2 is the variance of a full neighbourhood, whose
+//! point stays a ball of its size. Axes go with the eigenvalues, as in the paper, and not with their roots.
+//! Sums are in f64 and in a fixed order, so the same file gives the same bits.
 
 use std::collections::BTreeMap;
 
@@ -35,14 +35,14 @@ const LONELY: f64 = 0.5;
 const MAX_PAIRS: u64 = 1 << 31;
 
 /// What becomes of a point: an affine map of its ball, and the factor of its strength.
-pub(super) struct Kernel {
+pub(super) struct FluidKernel {
     /// Three rows of the map about the world's origin; the last column is the shift.
     pub(super) rows: [[f64; 4]; 3],
     pub(super) strength: f64,
 }
 
 /// The kernels of points with neighbourhoods of this radius.
-pub(super) fn kernels(positions: &NumberArray, radius: f64) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
+pub(super) fn kernels(positions: &NumberArray, radius: f64) -> Result<Vec<FluidKernel>, Vec<Diagnostic>> {
     let points: Vec<[f64; 3]> = (0..positions.len() / 3).map(|n| positions.triple(n)).collect();
     let cell = |point: [f64; 3]| point.map(|x| (x / radius).floor() as i64);
     let mut cells = BTreeMap::<[i64; 3], Vec<u32>>::new();
@@ -69,7 +69,7 @@ pub(super) fn kernels(positions: &NumberArray, radius: f64) -> Result<Vec<Kernel
 }
 
 /// The kernel of a point among others, itself among them.
-fn kernel(point: [f64; 3], near: impl Iterator<Item = [f64; 3]> + Clone, radius: f64) -> Kernel {
+fn kernel(point: [f64; 3], near: impl Iterator<Item = [f64; 3]> + Clone, radius: f64) -> FluidKernel {
     let weighted = near.filter_map(|other| {
         let way: [f64; 3] = std::array::from_fn(|k| other[k] - point[k]);
         let square = way.iter().map(|x| x * x).sum::<f64>() / (radius * radius);
@@ -107,7 +107,7 @@ fn kernel(point: [f64; 3], near: impl Iterator<Item = [f64; 3]> + Clone, radius:
         let moved: f64 = (0..3).map(|k| matrix[row][k] * point[k]).sum();
         [matrix[row][0], matrix[row][1], matrix[row][2], centre[row] - moved]
     });
-    Kernel { rows, strength: 1.0 / (axes[0] * axes[1] * axes[2]) }
+    FluidKernel { rows, strength: 1.0 / (axes[0] * axes[1] * axes[2]) }
 }
 
 #[cfg(test)]
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     /// The image of a direction.
-    fn image(kernel: &Kernel, way: [f64; 3]) -> f64 {
+    fn image(kernel: &FluidKernel, way: [f64; 3]) -> f64 {
         let image = kernel.rows.map(|row| (0..3).map(|k| row[k] * way[k]).sum::<f64>());
         image.iter().map(|x| x * x).sum::<f64>().sqrt()
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::anisotropic::{Kernel, kernels};
+use super::anisotropic::{FluidKernel, kernels};
 use super::options::{ParticleForm, ParticleOptions};
 use crate::import::imported::ReadModel;
 use crate::import::srgb::decoded;
@@ -94,7 +94,7 @@ impl Cloud {
         &mut self,
         positions: &NumberArray,
         options: &ParticleOptions,
-    ) -> Result<Option<Vec<Kernel>>, Vec<Diagnostic>> {
+    ) -> Result<Option<Vec<FluidKernel>>, Vec<Diagnostic>> {
         let Some(radius) = options.anisotropic else { return Ok(None) };
         if !(radius > 0.0 && radius.is_finite()) {
             let message = format!("the radius of neighbourhoods is {radius}");

@@ -8,7 +8,7 @@ use jbt_model::skeleton::{Point, Segment};
 
 use super::open::{ComponentFrame, Modifier, PovFrame};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::{Component, PlacedBlob, PovBlob, PovShapes};
 
 /// Smallest strength and squared radius of a component that counts, as in the original.
@@ -67,7 +67,7 @@ impl Script<'_> {
     /// A name in a blob: that of another blob, which this one begins with.
     pub(super) fn blob_name(&mut self, word: &str, span: Span) -> Result<(), Diagnostic> {
         let known = match self.value(word) {
-            Some(Value::Shapes(shapes)) if shapes.blobs.len() == 1 => Some(shapes.blobs[0].clone()),
+            Some(PovValue::Shapes(shapes)) if shapes.blobs.len() == 1 => Some(shapes.blobs[0].clone()),
             _ => None,
         };
         if let Some(placed) = known {
@@ -187,6 +187,6 @@ impl Script<'_> {
             let blob = Arc::new(blob);
             shapes.blobs.push(PlacedBlob { blob, map: DAffine3::IDENTITY, color: None, fault: None });
         }
-        self.deliver(Value::Shapes(Arc::new(shapes)), span)
+        self.deliver(PovValue::Shapes(Arc::new(shapes)), span)
     }
 }

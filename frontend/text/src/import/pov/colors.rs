@@ -4,7 +4,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::Amount;
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::Color;
 use crate::import::srgb;
 
@@ -86,9 +86,9 @@ impl Script<'_> {
     /// The colour of a name in a pigment or a texture. `None` if it is no such name.
     pub(super) fn named_color(&self, word: &str) -> Option<Option<Color>> {
         match self.value(word) {
-            Some(Value::Look(color)) => Some(*color),
-            Some(Value::Amount(amount)) => Some(self.linear(*amount)),
-            Some(Value::Shapes(_) | Value::Transform(_) | Value::Other) => None,
+            Some(PovValue::Look(color)) => Some(*color),
+            Some(PovValue::Amount(amount)) => Some(self.linear(*amount)),
+            Some(PovValue::Shapes(_) | PovValue::Transform(_) | PovValue::Other) => None,
             None => color(word)
                 .map(|[red, green, blue, _]| self.linear(Amount::Vector([red, green, blue, 0.0, 0.0], 3))),
         }

@@ -7,7 +7,7 @@ use super::amount::Amount;
 use super::colors;
 use super::open::{PovBlock, PovFrame};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 
 /// How far beyond its last value a loop may go, for rounding.
 const SLACK: f64 = 1e-10;
@@ -138,7 +138,7 @@ impl Script<'_> {
     fn count_on(&mut self, block: PovBlock, span: Span) -> Result<(), Diagnostic> {
         let PovBlock::For { name, value, last, step, .. } = &block else { return Ok(()) };
         let over = if *step > 0.0 { *value > last + SLACK } else { *value < last - SLACK };
-        let value = Value::Amount(Amount::Number(*value));
+        let value = PovValue::Amount(Amount::Number(*value));
         let name = name.clone();
         self.declare(&name, value);
         if over { self.skip_to_end(span).map(|_| ()) } else { self.block(block, span) }
@@ -262,7 +262,7 @@ impl Script<'_> {
         let (name, _) = self.scanner.expect_word("a name")?;
         let name = name.to_owned();
         self.skip_to_end(span)?;
-        self.declare(&name, Value::Other);
+        self.declare(&name, PovValue::Other);
         Ok(())
     }
 

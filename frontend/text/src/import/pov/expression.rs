@@ -7,7 +7,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::{Amount, PovFunction, PovOperator, function};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 
 /// What waits for operands.
 enum PovWaiting {
@@ -174,7 +174,7 @@ impl Script<'_> {
     fn named(&mut self, word: &str, span: Span) -> Result<Amount, Diagnostic> {
         let vector = |x, y, z, t, size| Amount::Vector([x, y, z, t, 0.0], size);
         if let Some(value) = self.value(word) {
-            let amount = if let Value::Amount(amount) = value { *amount } else { Amount::Unknown(span) };
+            let amount = if let PovValue::Amount(amount) = value { *amount } else { Amount::Unknown(span) };
             self.asked += 1;
             self.skip_arguments()?;
             return Ok(amount);

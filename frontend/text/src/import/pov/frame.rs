@@ -9,7 +9,7 @@ use super::amount::Amount;
 use super::colors;
 use super::open::{ComponentFrame, GroupFrame, LookFrame, PovFrame, SHAPES};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::{PovBlob, PovShapes};
 
 /// Groups, and whether they are more than a union.
@@ -116,30 +116,30 @@ impl Script<'_> {
     }
 
     /// The value of a declaration; `None` if it comes when something that is open now is closed.
-    pub(super) fn begin_value(&mut self, name: &str, span: Span) -> Result<Option<Value>, Diagnostic> {
+    pub(super) fn begin_value(&mut self, name: &str, span: Span) -> Result<Option<PovValue>, Diagnostic> {
         let place = self.scanner.place();
         let Some(word) = self.scanner.peek_word()? else {
-            return self.expression().map(|amount| Some(Value::Amount(amount)));
+            return self.expression().map(|amount| Some(PovValue::Amount(amount)));
         };
         if colors::begins(word) {
-            return self.color().map(|amount| Some(Value::Amount(amount)));
+            return self.color().map(|amount| Some(PovValue::Amount(amount)));
         }
         let word_span = self.scanner.next()?.1;
         let opens = self.scanner.peek()?.0 == PovToken::Mark(b'{');
-        if let Some(value) = self.value(word).filter(|value| !matches!(value, Value::Amount(_))) {
+        if let Some(value) = self.value(word).filter(|value| !matches!(value, PovValue::Amount(_))) {
             let value = value.clone();
-            if let Value::Shapes(shapes) = &value {
+            if let PovValue::Shapes(shapes) = &value {
                 self.spend(shapes.blobs.len(), span)?;
             }
             if matches!(self.scanner.peek()?.0, PovToken::Mark(b'(')) {
                 self.skip_balanced(b'(', b')')?;
-                return Ok(Some(Value::Amount(Amount::Unknown(word_span))));
+                return Ok(Some(PovValue::Amount(Amount::Unknown(word_span))));
             }
             return Ok(Some(value));
         }
         if !opens && !matches!(word, "function" | "array" | "spline") {
             self.scanner.go(place);
-            return self.expression().map(|amount| Some(Value::Amount(amount)));
+            return self.expression().map(|amount| Some(PovValue::Amount(amount)));
         }
         self.open(PovFrame::Declaration(name.to_owned()), span)?;
         if self.begin_shapes(word, word_span)? {
@@ -153,7 +153,7 @@ impl Script<'_> {
                 }
                 if self.scanner.peek()?.0 != PovToken::Mark(b'{') {
                     self.frames.pop();
-                    return Ok(Some(Value::Other));
+                    return Ok(Some(PovValue::Other));
                 }
             }
             _ => {}
@@ -171,7 +171,7 @@ impl Script<'_> {
     }
 
     /// Hands what was closed to what is open around it.
-    pub(super) fn deliver(&mut self, value: Value, span: Span) -> Result<(), Diagnostic> {
+    pub(super) fn deliver(&mut self, value: PovValue, span: Span) -> Result<(), Diagnostic> {
         match (self.frames.last_mut().map(|(frame, _)| frame), value) {
             (Some(PovFrame::Declaration(_)), value) => {
                 if let Some((PovFrame::Declaration(name), _)) = self.frames.pop() {
@@ -179,20 +179,22 @@ impl Script<'_> {
                 }
                 self.scanner.accept(b';')?;
             }
-            (Some(PovFrame::Group(group)), Value::Shapes(shapes)) => {
+            (Some(PovFrame::Group(group)), PovValue::Shapes(shapes)) => {
                 group.count += 1;
                 group.shapes.add(Arc::unwrap_or_clone(shapes));
             }
-            (Some(PovFrame::Group(GroupFrame { color, .. })), Value::Look(look)) => *color = look.or(*color),
-            (Some(PovFrame::Blob(PovBlob { color, .. })), Value::Look(look)) => *color = look.or(*color),
-            (Some(PovFrame::Component(ComponentFrame { color, .. })), Value::Look(look)) => {
+            (Some(PovFrame::Group(GroupFrame { color, .. })), PovValue::Look(look)) => {
+                *color = look.or(*color)
+            }
+            (Some(PovFrame::Blob(PovBlob { color, .. })), PovValue::Look(look)) => *color = look.or(*color),
+            (Some(PovFrame::Component(ComponentFrame { color, .. })), PovValue::Look(look)) => {
                 *color = look.or(*color);
             }
-            (Some(PovFrame::Group(GroupFrame { map, .. })), Value::Transform(new))
-            | (Some(PovFrame::Blob(PovBlob { map, .. })), Value::Transform(new))
-            | (Some(PovFrame::Component(ComponentFrame { map, .. })), Value::Transform(new))
-            | (Some(PovFrame::Transform(map)), Value::Transform(new)) => *map = new * *map,
-            (None, Value::Shapes(shapes)) => {
+            (Some(PovFrame::Group(GroupFrame { map, .. })), PovValue::Transform(new))
+            | (Some(PovFrame::Blob(PovBlob { map, .. })), PovValue::Transform(new))
+            | (Some(PovFrame::Component(ComponentFrame { map, .. })), PovValue::Transform(new))
+            | (Some(PovFrame::Transform(map)), PovValue::Transform(new)) => *map = new * *map,
+            (None, PovValue::Shapes(shapes)) => {
                 for word in &shapes.others {
                     self.left_out.note(span, &format!("{word} is no blob and is left out"));
                 }
@@ -200,7 +202,11 @@ impl Script<'_> {
             }
             (
                 _,
-                Value::Shapes(_) | Value::Look(_) | Value::Transform(_) | Value::Amount(_) | Value::Other,
+                PovValue::Shapes(_)
+                | PovValue::Look(_)
+                | PovValue::Transform(_)
+                | PovValue::Amount(_)
+                | PovValue::Other,
             ) => {}
         }
         Ok(())

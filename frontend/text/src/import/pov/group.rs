@@ -6,7 +6,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::open::{GroupFrame, Modifier, PovFrame};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::PovShapes;
 
 impl Script<'_> {
@@ -31,10 +31,10 @@ impl Script<'_> {
             Modifier::Done => return Ok(()),
             Modifier::None => {}
         }
-        if let Some(Value::Shapes(shapes)) = self.value(word) {
+        if let Some(PovValue::Shapes(shapes)) = self.value(word) {
             let shapes = Arc::clone(shapes);
             self.spend(1 + shapes.blobs.len(), span)?;
-            return self.deliver(Value::Shapes(shapes), span);
+            return self.deliver(PovValue::Shapes(shapes), span);
         }
         match self.scanner.peek()?.0 {
             PovToken::Mark(b'{') => {
@@ -47,7 +47,7 @@ impl Script<'_> {
             }
             _ => {
                 self.left_out.note(span, &format!("{word} is not known and is left out"));
-                self.deliver(Value::Shapes(Arc::new(PovShapes::other(word))), span)
+                self.deliver(PovValue::Shapes(Arc::new(PovShapes::other(word))), span)
             }
         }
     }
@@ -72,7 +72,7 @@ impl Script<'_> {
             // They are named in the fault.
             shapes.others.clear();
         }
-        self.deliver(Value::Shapes(Arc::new(shapes)), span)
+        self.deliver(PovValue::Shapes(Arc::new(shapes)), span)
     }
 }
 

@@ -9,7 +9,7 @@ use super::colors;
 use super::modifier::BRACES;
 use super::open::{LookFrame, Modifier, PovFrame, SHAPES};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::PovShapes;
 
 impl Script<'_> {
@@ -28,7 +28,7 @@ impl Script<'_> {
                     self.default_color = color;
                     return Ok(());
                 }
-                return self.deliver(Value::Look(color), span);
+                return self.deliver(PovValue::Look(color), span);
             }
             PovToken::Word => return self.word_of_look(span),
             _ => {}
@@ -95,8 +95,8 @@ impl Script<'_> {
                     let word = std::mem::take(&mut skip.word);
                     let begin = self.frames.pop().map_or(span, |(_, begin)| begin);
                     let is_shape = SHAPES.contains(&word.as_str());
-                    let shapes = || Value::Shapes(Arc::new(PovShapes::other(&word)));
-                    let value = if is_shape { shapes() } else { Value::Other };
+                    let shapes = || PovValue::Shapes(Arc::new(PovShapes::other(&word)));
+                    let value = if is_shape { shapes() } else { PovValue::Other };
                     return self.deliver(value, begin);
                 }
             }
@@ -117,7 +117,7 @@ impl Script<'_> {
         match token {
             PovToken::Mark(b'}') => {
                 let Some((PovFrame::Transform(map), begin)) = self.frames.pop() else { return Ok(()) };
-                return self.deliver(Value::Transform(map), begin);
+                return self.deliver(PovValue::Transform(map), begin);
             }
             PovToken::Mark(b',') => return Ok(()),
             PovToken::Word => {}
@@ -129,7 +129,7 @@ impl Script<'_> {
             Modifier::Done => return Ok(()),
             Modifier::None => match (word, self.value(word)) {
                 ("inverse", _) => DAffine3::IDENTITY,
-                (_, Some(&Value::Transform(map))) => map,
+                (_, Some(&PovValue::Transform(map))) => map,
                 _ => return Err(self.scanner.unexpected(token, span).expected("expected a transformation")),
             },
         };

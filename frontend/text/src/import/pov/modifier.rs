@@ -5,7 +5,7 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::open::{LookFrame, Modifier, PovFrame};
 use super::scan::PovToken;
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::transform;
 
 /// Modifiers in braces that have no effect on a field.
@@ -47,7 +47,7 @@ impl Script<'_> {
                 match token {
                     PovToken::Mark(b'{') => self.open(PovFrame::Transform(DAffine3::IDENTITY), span)?,
                     PovToken::Word => match self.value(self.scanner.word(at)) {
-                        Some(&Value::Transform(map)) => return Ok(Modifier::Map(map)),
+                        Some(&PovValue::Transform(map)) => return Ok(Modifier::Map(map)),
                         _ => return Err(self.unknown(at)),
                     },
                     _ => return Err(self.scanner.unexpected(token, at)),

@@ -10,7 +10,7 @@ use jbt_model::orientation::Orientation;
 use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
 
-use super::script::{Script, Value};
+use super::script::{PovValue, Script};
 use super::shape::{Color, Component, PlacedBlob, PovBlob};
 
 /// Words that begin the text of a scene, as a rule.
@@ -87,7 +87,7 @@ fn placed(script: &Script<'_>) -> Result<Vec<PlacedBlob>, Diagnostic> {
 
 /// The declared names that hold blobs.
 fn holders(script: &Script<'_>) -> Vec<String> {
-    let holds = |name: &&String| matches!(script.value(name), Some(Value::Shapes(shapes)) if !shapes.blobs.is_empty());
+    let holds = |name: &&String| matches!(script.value(name), Some(PovValue::Shapes(shapes)) if !shapes.blobs.is_empty());
     script.declared.iter().filter(holds).map(|name| clip(name)).take(20).collect()
 }
 
@@ -96,7 +96,7 @@ fn holders(script: &Script<'_>) -> Vec<String> {
 fn chosen(script: &mut Script<'_>, name: &str) -> Result<Vec<PlacedBlob>, Diagnostic> {
     let number = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let mut blobs = match (script.value(name), number) {
-        (Some(Value::Shapes(shapes)), _) => shapes.blobs.clone(),
+        (Some(PovValue::Shapes(shapes)), _) => shapes.blobs.clone(),
         (_, Some(number)) => script.scene.blobs.get(number).cloned().into_iter().collect(),
         _ => Vec::new(),
     };

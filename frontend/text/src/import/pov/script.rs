@@ -16,7 +16,7 @@ use crate::import::tally::LeftOut;
 
 /// What a name stands for.
 #[derive(Clone)]
-pub(super) enum Value {
+pub(super) enum PovValue {
     Amount(Amount),
     Shapes(Arc<PovShapes>),
     /// A pigment, a texture or a material: its colour, if it has one.
@@ -32,7 +32,7 @@ pub(super) struct Script<'a> {
     pub(super) texts: &'a PovTexts,
     /// Files that are being run.
     pub(super) returns: Vec<PovReturn>,
-    names: HashMap<String, Value>,
+    names: HashMap<String, PovValue>,
     /// Declared shapes, in the order of their first declarations.
     pub(super) declared: Vec<String>,
     pub(super) streams: Streams,
@@ -76,12 +76,12 @@ impl<'a> Script<'a> {
     }
 
     /// What a name stands for.
-    pub(super) fn value(&self, name: &str) -> Option<&Value> {
+    pub(super) fn value(&self, name: &str) -> Option<&PovValue> {
         self.names.get(name)
     }
 
-    pub(super) fn declare(&mut self, name: &str, value: Value) {
-        if matches!(value, Value::Shapes(_)) && !self.declared.iter().any(|known| known == name) {
+    pub(super) fn declare(&mut self, name: &str, value: PovValue) {
+        if matches!(value, PovValue::Shapes(_)) && !self.declared.iter().any(|known| known == name) {
             self.declared.push(name.to_owned());
         }
         match self.names.get_mut(name) {
