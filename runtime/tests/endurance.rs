@@ -92,7 +92,7 @@ fn eight_threads_ask_two_models_that_change() {
             let compiler = if version.is_multiple_of(5) { &Compiler::new() } else { &compilers[model] };
             let evaluator = compiler.evaluator(&versions[model][at], Query::ALL).expect("it compiles");
             let given = answers(&evaluator, &points);
-            assert_same(&expected[model][at].planes(), &given.planes(), "another answer");
+            assert_same(expected[model][at].planes(), given.planes(), "another answer");
             compiled.fetch_add(1, Ordering::Relaxed);
             version += 7;
         }

@@ -99,9 +99,9 @@ fn two_scenes_are_compared() {
         format!("jbt 1 union {{ hub: point {{ radius {radius} }} ring {{ ring_radius 2 radius 0.5 }} }}")
     };
     let folder = Folder::new()
-        .with("a.jbt", &scene("1"))
-        .with("b.jbt", &scene("1.5"))
-        .with("c.jbt", &format!("# the same\n{}", scene("1.0")));
+        .with("a.jbt", scene("1"))
+        .with("b.jbt", scene("1.5"))
+        .with("c.jbt", format!("# the same\n{}", scene("1.0")));
     let told = folder.jbt(&["diff", "a.jbt", "b.jbt"]).code(0).stdout();
     assert!(told.starts_with("a.jbt and b.jbt: 1 difference\n  at union.0/hub\n"), "{told}");
     assert!(

@@ -65,7 +65,7 @@ pub(crate) fn answers(evaluator: &Evaluator, points: &Points) -> Samples {
 
 /// Panics unless all answers are the same.
 pub(crate) fn compare(expected: &Samples, given: &Samples, points: &Points, what: &dyn Fn() -> String) {
-    let planes = expected.planes().into_iter().zip(given.planes());
+    let planes = expected.planes().iter().zip(given.planes());
     for (name, (expected, given)) in expected.layout().names().iter().zip(planes) {
         for (index, (&old, &new)) in expected.iter().zip(given.iter()).enumerate() {
             let point = points.get(index);

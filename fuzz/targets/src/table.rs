@@ -92,7 +92,7 @@ fn read_points(bytes: &[u8]) {
     match all() {
         Ok(read) => assert_eq!(read, bytes.len() as u64, "all bytes are read"),
         Err(points::PointTableError::Text { rendered, .. }) => {
-            assert!(rendered.starts_with("p.csv:"), "{rendered}")
+            assert!(rendered.starts_with("p.csv:"), "{rendered}");
         }
         Err(points::PointTableError::Limit(_)) => {}
         Err(points::PointTableError::Io { error, .. }) => panic!("bytes can be read: {error}"),

@@ -152,7 +152,6 @@ mod tests {
         }
         // How wide ranges are, on average, as a part of what they are op by op.
         let [smooth, rvachev] = [0, 1].map(|kind| parts[kind] / count[kind]);
-        println!("smooth {smooth:.3}, R-functions {rvachev:.3}");
         assert!(smooth < 0.98 && rvachev < 0.7, "{smooth} {rvachev}");
     }
 

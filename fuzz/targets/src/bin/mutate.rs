@@ -67,7 +67,7 @@ fn watch(running: &[RunningInput], folder: &Path, is_over: &AtomicBool) {
     while !is_over.load(Ordering::Relaxed) {
         std::thread::sleep(Duration::from_millis(200));
         for one in running {
-            let one = one.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            let one = one.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             if let Some((since, name, bytes)) = &*one
                 && since.elapsed() > LONGEST
             {

@@ -57,7 +57,7 @@ fn bounding<D: Domain>(side: Side, a: Range<D>) -> [Option<Bounding<D>>; MOST_BO
     match a.bounded {
         Bounded::Extreme(other, several) if other == side => return several,
         Bounded::Extreme(..) | Bounded::Alone => {
-            all[0] = Some(Bounding { identity: a.identity, complement: None })
+            all[0] = Some(Bounding { identity: a.identity, complement: None });
         }
         Bounded::Complement(complement) => {
             all[0] = Some(Bounding { identity: a.identity, complement: Some(complement) });

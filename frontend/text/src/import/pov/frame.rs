@@ -184,7 +184,7 @@ impl Script<'_> {
                 group.shapes.add(Arc::unwrap_or_clone(shapes));
             }
             (Some(PovFrame::Group(GroupFrame { color, .. })), PovValue::Look(look)) => {
-                *color = look.or(*color)
+                *color = look.or(*color);
             }
             (Some(PovFrame::Blob(PovBlob { color, .. })), PovValue::Look(look)) => *color = look.or(*color),
             (Some(PovFrame::Component(ComponentFrame { color, .. })), PovValue::Look(look)) => {

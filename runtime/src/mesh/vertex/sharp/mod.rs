@@ -126,9 +126,9 @@ impl VertexBatch {
                 let edges = |side: usize| sides[side].edges.count_ones();
                 if edges(side) > edges(best) { side } else { best }
             });
-            for axis in 0..3 {
+            for (axis, along) in normal.into_iter().enumerate() {
                 self.points[axis][vertex] = one.position[axis];
-                self.gradient[axis][vertex] = -normal[axis];
+                self.gradient[axis][vertex] = -along;
             }
             let planes = self.attributes.chunks_exact_mut(self.count);
             planes.zip(&sides[widest].attributes).for_each(|(plane, &value)| plane[vertex] = value);

@@ -32,12 +32,14 @@ impl Probes {
     }
 }
 
+/// For each point its unit normal, if there is one, and its signature.
+type DecidedPoints = (Vec<Option<[f64; 3]>>, Vec<u32>);
+
+/// For each sheet its crossings, if all of them have normals; and how many points were asked for gradients.
+type SheetCrossings = (Vec<Option<Vec<Crossing>>>, u64);
+
 /// Field, gradient and signature at some points: the unit normals, if there are any, and the signatures.
-fn decided<F: Field>(
-    field: &F,
-    region: &F::Region,
-    points: &[[f32; 3]],
-) -> Result<(Vec<Option<[f64; 3]>>, Vec<u32>), F::Error> {
+fn decided<F: Field>(field: &F, region: &F::Region, points: &[[f32; 3]]) -> Result<DecidedPoints, F::Error> {
     let count = points.len();
     if count == 0 {
         return Ok((Vec::new(), Vec::new()));
@@ -74,7 +76,7 @@ pub(super) fn look<F: Field>(
     region: &F::Region,
     iso: f32,
     (sheets, crossed): (&[&Sheet], &CrossedEdges),
-) -> Result<(Vec<Option<Vec<Crossing>>>, u64), F::Error> {
+) -> Result<SheetCrossings, F::Error> {
     let mut crossings = Vec::new();
     let mut walls = Vec::new();
     for sheet in sheets {
