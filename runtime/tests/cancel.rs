@@ -77,12 +77,15 @@ fn a_mesh_stops_while_its_programs_are_made() {
 }
 
 /// The reference is the slowest engine: its points are the longest pieces of work.
+/// What hears of progress.
+type Hook<'a> = dyn FnMut(f32) + Send + 'a;
+
 #[test]
 fn looks_are_never_far_apart() {
     let tree = tree(HERO);
     let compiler = Compiler::for_engine(Engine::Scalar);
     let compiled = compiler.compile(&tree);
-    let longest = |work: &dyn Fn(&mut (dyn FnMut(f32) + Send))| {
+    let longest = |work: &dyn Fn(&mut Hook<'_>)| {
         let (mut last, mut longest) = (Instant::now(), Duration::ZERO);
         work(&mut |_| {
             longest = longest.max(last.elapsed());

@@ -41,9 +41,9 @@ pub(crate) fn run(bytes: &[u8]) {
 }
 
 /// Positions, normals and triangles.
-fn bits(made: &Polygonized) -> (Vec<[u32; 3]>, Vec<[u32; 3]>, &[[u32; 3]]) {
+fn bits(made: &Polygonized) -> [Vec<[u32; 3]>; 3] {
     let of = |vectors: &[[f32; 3]]| vectors.iter().map(|vector| vector.map(f32::to_bits)).collect();
-    (of(&made.mesh.positions), of(&made.mesh.normals), &made.mesh.triangles)
+    [of(&made.mesh.positions), of(&made.mesh.normals), made.mesh.triangles.clone()]
 }
 
 /// None for models without a mesh.

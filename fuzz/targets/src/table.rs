@@ -5,6 +5,9 @@ use jbt::SceneFormat;
 use crate::read::{format_word, read};
 use crate::{engines, function, mesh, points, print, prune};
 
+/// What is done with bytes.
+type Run = Box<dyn Fn(&[u8])>;
+
 /// Something that takes bytes.
 pub struct FuzzTarget {
     /// Its name, which is that of its folders of inputs.
@@ -13,7 +16,7 @@ pub struct FuzzTarget {
     pub program: &'static str,
     /// What holds for any bytes.
     pub what: String,
-    run: Box<dyn Fn(&[u8])>,
+    run: Run,
 }
 
 impl std::fmt::Debug for FuzzTarget {

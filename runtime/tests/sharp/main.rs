@@ -1,5 +1,6 @@
 //! Edges and corners of the surface: vertices are on them, normals and attributes are split there, and smooth
 //! models keep their bits.
+#![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod cube;
 
