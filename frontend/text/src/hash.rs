@@ -56,7 +56,8 @@ impl fmt::Display for ModelHash {
 }
 
 /// The hash of a model. Equal models have equal hashes, whatever their nodes are called and whichever of
-/// them are shared; see the [module](self).
+/// them are shared. It is FNV-1a of 128 bits over what nodes say when they are printed; comments and places
+/// in a text do not count, parameters do.
 ///
 /// ```
 /// use jbt_text::{hash, model};

@@ -182,7 +182,7 @@ macro_rules! operators {
             /// See [`Step::COLUMNS`].
             const fn columns(self) -> &'static [&'static str] { match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ } }
 
-            /// See [`Step::CREASES`].
+            /// Whether the surface may have an edge where the two sides are equal.
             pub const fn creases(self) -> bool { match self { $( Self::$step(_) => <$step as Step>::CREASES, )+ } }
 
             /// See [`Step::rule`].
