@@ -14,7 +14,7 @@ mod task;
 
 use std::sync::{Arc, OnceLock};
 
-use jbt_ir::{pass, watch};
+use jbt_ir::{Selection, pass, watch};
 use jbt_lower::{Lowered, Lowering, Workers as _};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostic;
@@ -27,7 +27,6 @@ use crate::error::{CompileError, EvalError};
 use crate::kernel::{BoundKernel, Engine, Kernel, Purpose};
 use crate::parallel::PoolWorkers;
 use crate::program::{AnswerProgram, ModelProgram};
-use crate::prune::Region;
 use crate::prune::program::RangeProgram;
 use crate::span::span;
 
@@ -86,14 +85,14 @@ impl ModelProgram for DecisionProgram {
 pub(crate) struct Decisions(Arc<DecisionProgram>);
 
 impl Decisions {
-    /// Field, the three components of the gradient, and the signature at points of a region.
+    /// Field, the three components of the gradient, and the signature at points of a region that has these rows.
     pub(crate) fn eval_region(
         &self,
-        region: &Region,
+        selection: &Selection,
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
     ) -> Result<(), EvalError> {
-        self.0.0.run_with_finite_gradient(region.selection(), &points, answers).map(drop)
+        self.0.0.run_with_finite_gradient(selection, &points, answers).map(drop)
     }
 }
 

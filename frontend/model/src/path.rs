@@ -60,8 +60,8 @@ impl NodePath {
     }
 
     /// Whether a way of names from the root ends with this path.
-    pub(crate) fn ends(&self, way: &[PathStep<'_>]) -> bool {
-        let fits = |(element, step): (&PathElement, &PathStep<'_>)| {
+    pub(crate) fn ends(&self, way: &[WayStep<'_>]) -> bool {
+        let fits = |(element, step): (&PathElement, &WayStep<'_>)| {
             element.name == step.name && element.place.is_none_or(|place| place == step.place)
         };
         way.len() >= self.0.len() && self.0.iter().rev().zip(way.iter().rev()).all(fits)
@@ -90,7 +90,7 @@ pub(crate) trait NamedNodes<'a>: Nodes {
 
 /// A name on the way from the root, and how many of it came before below the same name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct PathStep<'a> {
+pub(crate) struct WayStep<'a> {
     pub(crate) name: &'a str,
     pub(crate) place: usize,
 }
@@ -123,12 +123,12 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
     root: N::Node,
     path: &NodePath,
     inside: bool,
-    mut meet: impl FnMut(MetNode<N::Node>, &[(N::Node, usize)], &[PathStep<'a>]),
+    mut meet: impl FnMut(MetNode<N::Node>, &[(N::Node, usize)], &[WayStep<'a>]),
 ) -> Result<(), TooManyPlaces> {
     let relevant = relevant(nodes, root, path);
     let mut frames: Vec<SearchFrame<N::Node>> = Vec::new();
     let mut above: Vec<(N::Node, usize)> = Vec::new();
-    let mut way: Vec<PathStep<'a>> = Vec::new();
+    let mut way: Vec<WayStep<'a>> = Vec::new();
     let mut counts: Vec<HashMap<&'a str, usize>> = vec![HashMap::new()];
     let mut next = Some(root);
     let mut met = 0;
@@ -144,7 +144,7 @@ pub(crate) fn search<'a, N: NamedNodes<'a>>(
                 let name = nodes.name(node);
                 if let Some(name) = name {
                     let count = counts.last_mut().expect("one for each name above").entry(name).or_default();
-                    way.push(PathStep { name, place: *count });
+                    way.push(WayStep { name, place: *count });
                     *count += 1;
                     counts.push(HashMap::new());
                 }

@@ -102,7 +102,10 @@ impl Field for Kernels {
         signature: &mut [f32],
     ) -> Result<(), EvalError> {
         match &self.decisions {
-            Some(decisions) => decisions.eval_region(region, [x, y, z], &mut [field, gx, gy, gz, signature]),
+            Some(decisions) => {
+                let answers = &mut [field, gx, gy, gz, signature];
+                decisions.eval_region(region.selection(), [x, y, z], answers)
+            }
             None => {
                 signature.fill(0.0);
                 self.gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])

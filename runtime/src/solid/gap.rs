@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::parts::{halves, ranges};
+use super::halves::{halves, ranges};
 use super::{Solid, SolidBatch, center, cut};
 use crate::boxes::{Box3, Divisible as _};
 use crate::error::EvalError;

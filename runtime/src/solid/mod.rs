@@ -19,6 +19,7 @@ mod bounds;
 mod crossings;
 mod cut;
 mod gap;
+mod halves;
 mod measure;
 mod membership;
 mod parts;

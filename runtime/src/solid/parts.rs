@@ -16,8 +16,9 @@ use jbt_model::combine::Intersection;
 use jbt_model::diagnostic::Diagnostics;
 
 use super::gap::{Gap, gap};
+use super::halves::{halves, ranges};
 use super::{Measure, MeasureError, Measures, RegionError, Solid, center, cut};
-use crate::boxes::{Box3, Divisible as _, MAX_PARTS, Range};
+use crate::boxes::{Box3, Divisible as _};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
@@ -382,20 +383,4 @@ impl PairSearch<'_> {
         next.extend(parts.iter().zip(regions).map(|(&bounds, (a, b))| PairBox { bounds, regions: [a, b] }));
         Ok(None)
     }
-}
-
-/// In how many parts a box is cut along each axis: sides that are much shorter than the longest stay whole.
-pub(super) fn halves(bounds: &Box3) -> [usize; 3] {
-    let longest = bounds.longest_side();
-    [0, 1, 2].map(|axis| if bounds.high[axis] - bounds.low[axis] > 0.5 * longest { 2 } else { 1 })
-}
-
-/// The ranges of a field over up to [`MAX_PARTS`] boxes.
-pub(super) fn ranges(solid: &Solid, region: &Region, boxes: &[Box3]) -> Result<Vec<Range>, EvalError> {
-    debug_assert!(boxes.len() <= MAX_PARTS);
-    let mut ranges = vec![crate::boxes::ANYTHING; boxes.len()];
-    if !boxes.is_empty() {
-        solid.pruner.ranges(region, boxes, &mut ranges)?;
-    }
-    Ok(ranges)
 }

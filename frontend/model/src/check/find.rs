@@ -3,7 +3,7 @@
 use super::arena::NodeId;
 use super::tree::CheckedTree;
 use crate::diagnostic::Diagnostics;
-use crate::path::{MetNode, NamedNodes, NodePath, PathStep, nowhere, search, too_many};
+use crate::path::{MetNode, NamedNodes, NodePath, WayStep, nowhere, search, too_many};
 
 /// A place in a tree that a path of names leads to.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -45,7 +45,7 @@ impl CheckedTree {
     pub fn find(&self, path: &str) -> Result<Vec<FoundNode>, Diagnostics> {
         let path = NodePath::parse(path).map_err(|error| vec![error])?;
         let mut found = Vec::new();
-        let mut ways: Vec<Vec<PathStep<'_>>> = Vec::new();
+        let mut ways: Vec<Vec<WayStep<'_>>> = Vec::new();
         // All places of these names, so that it is known where a name alone will do.
         let searched = search(self, self.root(), &path.of_any_place(), true, |met, above, way| {
             if let MetNode::Found(node) = met {
@@ -73,20 +73,20 @@ impl CheckedTree {
 }
 
 /// The path of one of these ways: with places where there are others.
-fn exact(ways: &[Vec<PathStep<'_>>], index: usize) -> String {
+fn exact(ways: &[Vec<WayStep<'_>>], index: usize) -> String {
     let mine = &ways[index];
     let mut path = String::new();
     for (depth, step) in mine.iter().enumerate() {
-        let is_other = |way: &&[PathStep<'_>]| {
+        let is_other = |way: &&[WayStep<'_>]| {
             way.len() > depth
                 && way[..depth] == mine[..depth]
                 && way[depth].name == step.name
                 && way[depth].place != step.place
         };
         // Ways are in order, so others of the same names stand beside this one.
-        let near = |range: &[Vec<PathStep<'_>>], last: bool| {
-            let same = |way: &&Vec<PathStep<'_>>| way.len() > depth && way[..depth] == mine[..depth];
-            let mut others: Box<dyn Iterator<Item = &Vec<PathStep<'_>>>> =
+        let near = |range: &[Vec<WayStep<'_>>], last: bool| {
+            let same = |way: &&Vec<WayStep<'_>>| way.len() > depth && way[..depth] == mine[..depth];
+            let mut others: Box<dyn Iterator<Item = &Vec<WayStep<'_>>>> =
                 if last { Box::new(range.iter().rev()) } else { Box::new(range.iter()) };
             others.by_ref().take_while(same).any(|way| is_other(&way.as_slice()))
         };
