@@ -15,8 +15,8 @@
 //!
 //! ```text
 //! probe    each crossed edge of the brick: nearly its crossing, with normal and signature        (probe)
-//! chosen   cells with one sheet, whose crossings differ
-//! look     their crossings, halved to the end, seen from a little inside of the cell, so that
+//! chosen   cells with one sheet, whose crossings differ, or may do
+//! look     their crossings, halved to the end, seen from the end where their side decides, so that
 //!          edges of the solid along lattice planes have a side                                   (probe)
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
 //! place    in the cell, or up to half a cell beyond: an edge may poke through a side of its cell
@@ -54,7 +54,7 @@ impl VertexBatch {
         let mut gradient_evaluations = probes.asked;
         let chosen: Vec<&Sheet> = sheets
             .iter()
-            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet.numbers()))
+            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet, iso))
             .collect();
         if chosen.is_empty() {
             return Ok(Done { gradient_evaluations, ..Done::default() });
