@@ -18,6 +18,7 @@
 //! chosen   cells with one sheet, whose crossings differ, or may do
 //! look     their crossings, halved to the end, seen from the end where their side decides, so that
 //!          edges of the solid along lattice planes have a side                                   (probe)
+//! leaning  where the field jumps, normals by crossings beside them                              (leaning)
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
 //! place    in the cell, or up to half a cell beyond: an edge may poke through a side of its cell
 //!          and have no point in it                                                               (place)
@@ -27,6 +28,7 @@
 
 mod candidate;
 mod crossing;
+mod leaning;
 mod place;
 mod probe;
 mod quadric;

@@ -1,9 +1,10 @@
 //! Crossings with their normals and signatures.
 
 use super::super::super::field::Field;
-use super::super::bracket::{BracketPoints, CrossedEdge, CrossedEdges};
+use super::super::bracket::{BracketPoints, CrossedEdges};
 use super::super::sheet::Sheet;
 use super::crossing::{Crossing, SHARP, dot};
+use super::leaning;
 
 /// The distance from the surface, in cells, from which on an estimate of a crossing tells nothing.
 const OFF: f64 = 1.0 / 16384.0;
@@ -101,40 +102,30 @@ pub(super) fn look<F: Field>(
     (sheets, crossed): (&[&Sheet], &CrossedEdges),
 ) -> Result<(Vec<Option<Vec<Crossing>>>, u64), F::Error> {
     let edges = || sheets.iter().flat_map(|sheet| sheet.crossed(crossed));
-    let ends: Vec<[f32; 3]> = edges().flat_map(|edge| [outside(edge), edge.inside()]).collect();
+    let ends: Vec<[f32; 3]> = edges().flat_map(|edge| [edge.outside(), edge.inside()]).collect();
     let ends_found = decided(field, region, &ends)?;
     let mut both = ends.as_chunks::<2>().0.iter().zip(ends_found.as_chunks::<2>().0);
     let mut points = BracketPoints::default();
     let mut found = Vec::new();
     for sheet in sheets {
-        let mut mean = [0.0; 3];
-        for edge in sheet.crossed(crossed) {
-            mean.iter_mut().zip(edge.crossing()).for_each(|(sum, c)| *sum += f64::from(c));
-        }
-        let mean = mean.map(|sum| sum / sheet.numbers().len() as f64);
-        let mut crossings = Vec::new();
+        let (mut crossings, mut unseen) = (Vec::new(), Vec::new());
         for (edge, (ends, at)) in sheet.crossed(crossed).zip(both.by_ref()) {
             let place = edge.crossing();
-            let crossing = if edge.is_jump() {
-                let normal =
-                    edge.leaning(mean, sheet.size, sheet.cell).normal(field, region, iso, &mut points)?;
-                normal.map(|normal| Crossing { place, seen: ends[1], normal, signature: None })
+            let end = if edge.is_jump() { 1 } else { deciding_end(ends, at) };
+            let (signature, normal) = if edge.is_jump() {
+                (None, leaning::normal(field, region, iso, (sheet, edge), &mut points)?)
             } else {
-                let end = deciding_end(ends, at);
-                let signature = Some(at[end].signature);
-                at[end].normal().map(|normal| Crossing { place, seen: ends[end], normal, signature })
+                (Some(at[end].signature), at[end].normal())
             };
-            crossings.push(crossing);
+            if normal.is_none() {
+                unseen.push(crossings.len());
+            }
+            let normal = normal.unwrap_or_default();
+            crossings.push(Crossing { place, seen: ends[end], normal, signature });
         }
-        found.push(crossings.into_iter().collect());
+        found.push(with_walls(crossings, &unseen, sheet.size));
     }
     Ok((found, ends.len() as u64))
-}
-
-/// The outer end of what is left of an edge.
-fn outside(edge: &CrossedEdge) -> [f32; 3] {
-    let (middle, inside) = (edge.crossing(), edge.inside());
-    [0, 1, 2].map(|axis| middle[axis] + (middle[axis] - inside[axis]))
 }
 
 /// The end at which the operand decides that has the crossing: 0 for the outer one, 1 for the inner one. If
@@ -147,4 +138,26 @@ fn deciding_end([outside, inside]: &[[f32; 3]; 2], at: &[Decided; 2]) -> usize {
     let way: [f64; 3] = std::array::from_fn(|axis| f64::from(inside[axis]) - f64::from(outside[axis]));
     let [outer, inner] = at.each_ref().map(|at| dot(at.slope, way));
     usize::from(outer < inner)
+}
+
+/// Crossings of a sheet of a cell of this size, where those without a normal get that of the wall that they
+/// are on. `None` if one of them is on no other's wall.
+fn with_walls(mut crossings: Vec<Crossing>, unseen: &[usize], size: f32) -> Option<Vec<Crossing>> {
+    /// The distance from a wall, in cells, up to which a crossing is on it.
+    const NEAR: f64 = 1.0 / 256.0;
+    for &n in unseen {
+        let Crossing { place, signature, .. } = crossings[n];
+        let others = crossings.iter().enumerate().filter(|(other, _)| !unseen.contains(other));
+        let walls = others.map(|(_, crossing)| crossing).filter(|crossing| crossing.signature.is_none());
+        let distance = |wall: &&Crossing| {
+            let way = std::array::from_fn(|axis| f64::from(place[axis]) - f64::from(wall.place[axis]));
+            dot(wall.normal, way).abs()
+        };
+        let nearest = walls.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        if signature.is_some() || distance(&nearest) > NEAR * f64::from(size) {
+            return None;
+        }
+        crossings[n].normal = nearest.normal;
+    }
+    Some(crossings)
 }
