@@ -42,15 +42,19 @@ impl<'a> Candidate<'a> {
         quadric::aim(&self.crossings, self.mean)
     }
 
-    /// Where the planes of the two sides with the most crossings meet.
-    pub(super) fn edge(&self) -> Option<EdgeAim> {
-        let mut sides: Vec<(usize, usize)> =
-            (0..self.count).map(|side| (self.sides.iter().filter(|&&of| of == side).count(), side)).collect();
-        sides.sort_by_key(|&(crossings, side)| (usize::MAX - crossings, side));
-        let chosen: Vec<usize> = sides.iter().take(2).map(|&(_, side)| side).collect();
-        let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
-        let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
-        quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
+    /// Where the planes of two sides meet, for all pairs; those with the most crossings first.
+    pub(super) fn edges(&self) -> Vec<EdgeAim> {
+        let crossings = |side: usize| self.sides.iter().filter(|&&of| of == side).count();
+        let mut sides: Vec<usize> = (0..self.count).collect();
+        sides.sort_by_key(|&side| usize::MAX - crossings(side));
+        let pairs = (1..self.count).flat_map(|b| (0..b).map(move |a| [a, b]));
+        let aims = pairs.filter_map(|pair| {
+            let chosen = pair.map(|n| sides[n]);
+            let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
+            let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
+            quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
+        });
+        aims.collect()
     }
 
     /// The sides, with the means of what is at their crossings.

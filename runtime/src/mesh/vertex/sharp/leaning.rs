@@ -8,16 +8,18 @@
 
 use super::super::super::field::Field;
 use super::super::bracket::{Bracket, BracketPoints, CrossedEdge};
+use super::super::margin::four_steps;
 use super::super::sheet::Sheet;
 
 /// How far the outer lines are beside the edge, and how far all reach to both sides of the crossing, in
 /// cells: at first usual ones, then for walls along the edge, then for corners of the cell.
 const LINES: [[f32; 2]; 4] =
-    [[1.0 / 256.0, 1.0 / 16.0], [1.0 / 256.0, 0.5], [1.0 / 2048.0, 1.0 / 16.0], [1.0 / 16384.0, 1.0 / 16.0]];
+    [[1.0 / 256.0, 1.0 / 16.0], [1.0 / 256.0, 0.5], [1.0 / 2048.0, 1.0 / 16.0], [1.0 / 8192.0, 1.0 / 16.0]];
 /// Halvings: as many as there are numbers in between.
 const HALVINGS: usize = 19;
-/// How far off a line three crossings may be, in parts of the way from the first to the last.
-const BENT: f64 = 1.0 / 32.0;
+/// How far off a line three crossings may be, in parts of the way from the first to the last; rounding comes
+/// on top.
+const BENT: f64 = 1.0 / 128.0;
 
 /// The unit normal away from the inside of the wall at a crossed edge of a sheet; `None` if it cannot be seen.
 pub(super) fn normal<F: Field>(
@@ -88,13 +90,15 @@ impl Leaning {
         let mut brackets: Vec<&mut Bracket> = self.brackets.iter_mut().collect();
         points.halve(field, region, iso, &mut brackets, HALVINGS)?;
         let heights = self.brackets.each_ref().map(|bracket| f64::from(bracket.middle()[self.axis]));
+        let [outside, inside] = self.brackets[0].ends;
+        let rounding = f64::from(four_steps(outside[self.axis], inside[self.axis]));
         let mut normal = [0.0; 3];
         normal[self.axis] = 1.0;
         for near in [0, 2] {
             let [rise, far] = [near, near + 1].map(|n| heights[n + 1] - heights[0]);
             let [(_, near_way), (other, far_way)] = [self.ways[near], self.ways[near + 1]];
             let bend = far - rise * far_way / near_way;
-            if bend.abs() > BENT * far_way.hypot(far) {
+            if bend.abs() > BENT * far_way.hypot(far) + rounding {
                 return Ok(None);
             }
             normal[other] = -far / far_way;

@@ -46,20 +46,21 @@ pub(super) fn place<F: Field>(
             one.position = clamped(point, bounds);
             continue;
         }
-        let edge = if let EdgeAim::Point(_) = aim {
+        let edges = if let EdgeAim::Point(_) = aim {
             claims.extend(claim(source, brick, n, one, aim));
-            one.edge().unwrap_or(aim)
+            one.edges()
         } else {
-            aim
+            vec![aim]
         };
         let near = beside(&source.bricks.axes, one.sheet.cell);
-        let reached = edge.within(bounds).map(|point| clamped(point, bounds));
-        let beyond = || match edge {
-            EdgeAim::Line(..) => edge.within(near).map(|point| clamped(point, near)),
-            EdgeAim::Point(_) => None,
+        let first = |bounds: Box3| {
+            edges.iter().find_map(|edge| edge.within(bounds)).map(|point| clamped(point, bounds))
         };
-        one.is_beyond = reached.is_none() && beyond().is_some();
-        one.position = reached.or_else(beyond).unwrap_or_else(|| clamped(edge.point(), bounds));
+        let reached = first(bounds);
+        let beyond = if reached.is_none() { first(near) } else { None };
+        one.is_beyond = beyond.is_some();
+        let nearest = || clamped(edges.first().unwrap_or(&aim).point(), bounds);
+        one.position = reached.or(beyond).unwrap_or_else(nearest);
     }
     if claims.is_empty() && !candidates.iter().any(|one| one.is_beyond) {
         return Ok(None);
