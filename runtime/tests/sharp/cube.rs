@@ -21,6 +21,8 @@ pub(crate) struct Found {
     pub(crate) good: usize,
     /// The largest distance of such a vertex from an edge.
     pub(crate) worst: f64,
+    /// Those that are farther than half a cell from an edge, and farther than without sharp edges.
+    pub(crate) worse: usize,
     /// The largest distance of a corner of the cube from a vertex.
     pub(crate) worst_corner: f64,
     /// Triangles that look inwards.
@@ -103,6 +105,8 @@ impl Cube {
             }
             let &[vertex] = &vertices[..] else { panic!("{cell:?} has one sheet: {vertices:?}") };
             let distance = self.edge_distance(positions[vertex]) / size;
+            let before = self.edge_distance(DVec3::from(usual.mesh.positions[vertex].map(f64::from))) / size;
+            found.worse += usize::from(distance > before.max(0.5));
             found.cells += 1;
             found.good += usize::from(distance < 1e-2);
             found.worst = found.worst.max(distance);

@@ -110,6 +110,7 @@ fn turned_cubes_have_sharp_edges() {
             let [usual, made] = [false, true].map(|sharp| mesh(&text, 0.08, sharp));
             assert_sound(&made);
             let found = cube.judge(&made, &usual);
+            assert_eq!(found.worse, 0, "{name}");
             (cells, good) = (cells + found.cells, good + found.good);
             (worst, folded) = (worst.max(found.worst), folded + found.folded);
             before += cube.judge(&usual, &usual).folded;

@@ -22,7 +22,7 @@
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
 //! place    in the cell, or up to half a cell beyond: an edge may poke through a side of its cell
 //!          and have no point in it                                                               (place)
-//! keep     if the field is nearer to the iso-value than at the mean
+//! keep     if the field is nearer to the iso-value than at the mean; at a jump, if the surface is there
 //! sides    for each signature: the mean normal, the mean attributes, and the crossings
 //! ```
 
@@ -72,7 +72,7 @@ impl VertexBatch {
             .collect();
         let wide = place::place(source, brick, self, &mut candidates)?;
         let region = wide.as_ref().unwrap_or(region);
-        candidates = place::nearer(source.field, region, iso, candidates)?;
+        candidates = place::nearer(source.field, (region, source.bricks), iso, candidates)?;
         let sharp = self.put(source, brick, &candidates)?;
         Ok(Done { gradient_evaluations, sharp, ..Done::default() })
     }
