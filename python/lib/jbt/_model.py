@@ -364,7 +364,7 @@ class Model(ModelMembers):
         cell: float | None = None,
         region: Region | None = None,
         thin: bool = True,
-        sharp: bool = True,
+        sharp: bool = False,
         engine: Engine | None = None,
         threads: int | None = None,
         progress: Progress = None,

@@ -1,9 +1,11 @@
 //! A cube that judges meshes of itself.
 
+use std::collections::BTreeMap;
+
 use glam::{DAffine3, DQuat, DVec3};
 use jbt::Polygonized;
 
-/// A cube about the origin.
+/// A cube.
 pub(crate) struct Cube {
     half: f64,
     /// From the world to its axes.
@@ -19,6 +21,8 @@ pub(crate) struct Found {
     pub(crate) good: usize,
     /// The largest distance of such a vertex from an edge.
     pub(crate) worst: f64,
+    /// Those that are farther than half a cell from an edge, and farther than without sharp edges.
+    pub(crate) worse: usize,
     /// The largest distance of a corner of the cube from a vertex.
     pub(crate) worst_corner: f64,
     /// Triangles that look inwards.
@@ -42,8 +46,9 @@ const EDGES: [([usize; 3], usize); 12] = [
 ];
 
 impl Cube {
-    pub(crate) fn along_axes(half: f64) -> Self {
-        Self { half, inverse: DAffine3::IDENTITY }
+    /// A cube along the axes, with its centre as far along each.
+    pub(crate) fn along_axes(half: f64, centre: f64) -> Self {
+        Self { half, inverse: DAffine3::from_translation(DVec3::splat(-centre)) }
     }
 
     pub(crate) fn turned(half: f64, axis: [f64; 3], degrees: f64) -> Self {
@@ -73,30 +78,35 @@ impl Cube {
         (0..3).map(off).fold(f64::INFINITY, f64::min)
     }
 
-    pub(crate) fn judge(&self, made: &Polygonized) -> Found {
+    /// Judges a mesh by its vertices at edges. `usual` is the mesh without sharp edges, whose vertices tell
+    /// their cells: they are the same ones, and none has left its cell.
+    pub(crate) fn judge(&self, made: &Polygonized, usual: &Polygonized) -> Found {
         let (cells, size) = (made.lattice.cells(), made.lattice.spacing());
         let coordinates = |axis: usize| (0..=cells[axis]).map(move |n| made.lattice.coordinate(axis, n));
         let axes = [0, 1, 2].map(|axis| coordinates(axis).collect::<Vec<f32>>());
         let positions: Vec<DVec3> =
             made.mesh.positions.iter().map(|&p| DVec3::from(p.map(f64::from))).collect();
         let at = |index: [usize; 3]| DVec3::from([0, 1, 2].map(|axis| f64::from(axes[axis][index[axis]])));
-        let mut crossed: Vec<([usize; 3], u8)> = (0..cells[0])
-            .flat_map(|x| (0..cells[1]).flat_map(move |y| (0..cells[2]).map(move |z| [x, y, z])))
-            .map(|cell| (cell, self.signs(cell, &at)))
-            .filter(|(_, signs)| (1..255).contains(signs))
-            .collect();
-        // Vertices are in the order of their cells, which is Morton order.
-        crossed.sort_by_key(|(cell, _)| morton(*cell));
-        let expected: usize = crossed.iter().map(|(_, signs)| sheets(*signs)).sum();
-        assert_eq!(expected, positions.len(), "each sheet of a cell has a vertex");
-        let (mut found, mut next) = (Found::default(), 0);
-        for (cell, signs) in crossed {
-            let (vertex, count) = (next, sheets(signs));
-            next += count;
-            if count > 1 || self.faces(cell, &at).count_ones() < 2 {
+        assert_eq!(positions.len(), usual.mesh.positions.len(), "each sheet of a cell has a vertex");
+        let mut vertices: BTreeMap<[usize; 3], Vec<usize>> = BTreeMap::new();
+        for (vertex, position) in usual.mesh.positions.iter().enumerate() {
+            let cell = [0, 1, 2].map(|axis| axes[axis].partition_point(|&c| c <= position[axis]) - 1);
+            vertices.entry(cell).or_default().push(vertex);
+        }
+        let all = (0..cells[0])
+            .flat_map(|x| (0..cells[1]).flat_map(move |y| (0..cells[2]).map(move |z| [x, y, z])));
+        let crossed: Vec<[usize; 3]> =
+            all.filter(|&cell| (1..255).contains(&self.signs(cell, &at))).collect();
+        assert!(crossed.iter().eq(vertices.keys()), "each crossed cell has a vertex, and no other one has");
+        let mut found = Found::default();
+        for (cell, vertices) in vertices {
+            if sheets(self.signs(cell, &at)) > 1 || self.faces(cell, &at).count_ones() < 2 {
                 continue;
             }
+            let &[vertex] = &vertices[..] else { panic!("{cell:?} has one sheet: {vertices:?}") };
             let distance = self.edge_distance(positions[vertex]) / size;
+            let before = self.edge_distance(DVec3::from(usual.mesh.positions[vertex].map(f64::from))) / size;
+            found.worse += usize::from(distance > before.max(0.5));
             found.cells += 1;
             found.good += usize::from(distance < 1e-2);
             found.worst = found.worst.max(distance);
@@ -143,16 +153,11 @@ impl Cube {
                 let middle = 0.5 * (outside + inside);
                 if self.depth(middle) >= 0.0 { inside = middle } else { outside = middle }
             }
-            faces |= 1_u8 << self.face(inside);
+            // Where a face is in a plane of the lattice, an inner end may be on its edge.
+            faces |= 1_u8 << self.face(outside);
         }
         faces
     }
-}
-
-fn morton(cell: [usize; 3]) -> u64 {
-    (0..20).fold(0, |bits, bit| {
-        (0..3).fold(bits, |bits, axis| bits | (cell[axis] as u64 >> bit & 1) << (3 * bit + axis))
-    })
 }
 
 /// The sheets of a cell of a convex body: one for each part of its corners inside, or outside.

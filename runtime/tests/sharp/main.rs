@@ -57,20 +57,42 @@ fn cubes(a: f64) -> Vec<(&'static str, String)> {
     ]
 }
 
+#[track_caller]
+fn assert_exact(name: &str, cube: &Cube, [usual, made]: &[Polygonized; 2]) {
+    assert_sound(made);
+    let found = cube.judge(made, usual);
+    println!("{name}: {found:?}");
+    assert!(found.cells >= 8 + 12 * 10, "{name}: {found:?}");
+    assert!(found.worst < 1e-3, "{name}: {found:?}");
+    assert!(found.worst_corner < 1e-3, "{name}: {found:?}");
+    assert_eq!(found.folded, 0, "{name}");
+}
+
 /// A cube along the lattice, with its faces anywhere between lattice planes.
 #[test]
 fn a_cube_along_the_lattice_is_exact() {
-    for a in [0.7, 0.73, 0.81] {
+    for a in [0.7, 0.73, 0.75, 0.81, 0.8125] {
         for (name, text) in cubes(a) {
-            let made = mesh(&format!("jbt 1 {text}"), 0.125, true);
-            assert_sound(&made);
-            let cube = Cube::along_axes(a);
-            let found = cube.judge(&made);
-            println!("{name} {a}: {found:?}");
-            assert!(found.cells >= 8 + 12 * 10, "{name} {a}: {found:?}");
-            assert!(found.worst < 1e-3, "{name} {a}: {found:?}");
-            assert!(found.worst_corner < 1e-3, "{name} {a}: {found:?}");
-            assert_eq!(found.folded, 0, "{name} {a}");
+            let made = [false, true].map(|sharp| mesh(&format!("jbt 1 {text}"), 0.125, sharp));
+            assert_exact(&format!("{name} {a}"), &Cube::along_axes(a, 0.0), &made);
+        }
+    }
+}
+
+/// A cube with all faces in lattice planes.
+#[test]
+fn a_cube_on_the_lattice_is_exact() {
+    let compiler = Compiler::new();
+    let lattice = mesh(&format!("jbt 1 {}", cubes(0.75)[0].1), 0.125, true).lattice;
+    let planes: Vec<f32> = (0..=lattice.cells()[0]).map(|n| lattice.coordinate(0, n)).collect();
+    for (half, centre) in [(0.75, -0.007_812_5), (0.8125, 0.054_687_5)] {
+        assert!([centre - half, centre + half].iter().all(|&face| planes.contains(&(face as f32))));
+        for (name, text) in cubes(half) {
+            let text = format!("jbt 1 translate ({centre} {centre} {centre}) {{ {text} }}");
+            let compiled = compiler.compile(&tree(&text));
+            let made =
+                [false, true].map(|sharp| settings(0.125, sharp).over(&compiled, &lattice).run().unwrap());
+            assert_exact(&format!("{name} {half}"), &Cube::along_axes(half, centre), &made);
         }
     }
 }
@@ -86,12 +108,13 @@ fn turned_cubes_have_sharp_edges() {
             let [x, y, z] = axis;
             let text = format!("jbt 1 rotate axis ({x} {y} {z}) degrees {degrees} {{ {text} }}");
             let cube = Cube::turned(0.8, axis, degrees);
-            let made = mesh(&text, 0.08, true);
+            let [usual, made] = [false, true].map(|sharp| mesh(&text, 0.08, sharp));
             assert_sound(&made);
-            let found = cube.judge(&made);
+            let found = cube.judge(&made, &usual);
+            assert_eq!(found.worse, 0, "{name}");
             (cells, good) = (cells + found.cells, good + found.good);
             (worst, folded) = (worst.max(found.worst), folded + found.folded);
-            before += cube.judge(&mesh(&text, 0.08, false)).folded;
+            before += cube.judge(&usual, &usual).folded;
         }
         println!(
             "{name}: {good} of {cells} feature cells, worst {worst:.4} cells, {folded} folded, {before} before"

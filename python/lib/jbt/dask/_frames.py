@@ -102,7 +102,7 @@ def frame(path: str, root: str, folder: str, settings: dict[str, Any]) -> dict[s
     if told is not None:
         return {"file": path, "mesh": str(target), "made": False, **told}
     mesh = _model(file, settings)._native.mesh(
-        settings["resolution"], settings["cell"], settings["region"], False, None, 1, None
+        settings["resolution"], settings["cell"], settings["region"], False, False, None, 1, None
     )
     from .._mesh import of_native
 

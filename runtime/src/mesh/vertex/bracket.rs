@@ -13,7 +13,6 @@
 //! the same.
 
 use super::super::field::Field;
-use crate::boxes::Box3;
 
 /// Two points, and the field at them: the first is outside, the second inside.
 #[derive(Clone, Copy, Debug)]
@@ -141,6 +140,11 @@ impl CrossedEdge {
         self.bracket.middle()
     }
 
+    /// A point outside, next to the crossing.
+    pub(super) fn outside(&self) -> [f32; 3] {
+        self.bracket.ends[0]
+    }
+
     /// A point inside, next to the crossing.
     pub(super) fn inside(&self) -> [f32; 3] {
         self.bracket.ends[1]
@@ -173,87 +177,6 @@ impl CrossedEdge {
             return stays(middle, 1.0, 0.25);
         }
         stays(first, 1.0 / 32.0, 0.25) || stays(first, 1.0 / 16.0, 0.5)
-    }
-}
-
-/// How a wall leans at a crossing: its crossings with the edge, and with two lines beside it.
-///
-/// ```text
-///     o-----x--------o     the edge
-///     o------x-------o     a line beside it, a little towards the middle of the cell
-/// ```
-pub(super) struct Leaning {
-    axis: usize,
-    /// The sides of the lines, and the lines; the edge is the first one.
-    beside: [(usize, f32); 2],
-    brackets: [Bracket; 3],
-}
-
-impl CrossedEdge {
-    /// How the wall at its crossing leans towards the mean of the crossings around, in a cell with edges of
-    /// this size.
-    pub(super) fn leaning(&self, mean: [f64; 3], size: f32, cell: Box3) -> Leaning {
-        /// How far the lines are beside the edge, in cells.
-        const BESIDE: f32 = 1.0 / 256.0;
-        /// How far they reach to both sides of the crossing.
-        const REACH: f32 = 1.0 / 16.0;
-        let [outside, inside] = self.bracket.ends;
-        let at = self.crossing();
-        let axis = (0..3).fold(0, |best, axis| {
-            let length = |axis: usize| (outside[axis] - inside[axis]).abs();
-            if length(axis) > length(best) { axis } else { best }
-        });
-        let outward = (outside[axis] - inside[axis]).signum();
-        let beside = [(axis + 1) % 3, (axis + 2) % 3].map(|other| {
-            let towards = (mean[other] as f32 - at[other]).clamp(-BESIDE * size, BESIDE * size);
-            (other, towards)
-        });
-        let line = |(other, towards): (usize, f32)| {
-            let mut ends = [at, at];
-            for (end, way) in ends.iter_mut().zip([outward, -outward]) {
-                end[other] += towards;
-                end[axis] = (end[axis] + way * REACH * size).clamp(cell.low[axis], cell.high[axis]);
-            }
-            Bracket { ends, values: [0.0; 2] }
-        };
-        Leaning { axis, beside, brackets: [self.bracket, line(beside[0]), line(beside[1])] }
-    }
-}
-
-impl Leaning {
-    /// The unit normal of the wall; `None` if it is not between the ends of the lines, or if there is no way
-    /// to the side.
-    pub(super) fn normal<F: Field>(
-        &mut self,
-        field: &F,
-        region: &F::Region,
-        iso: f32,
-        points: &mut BracketPoints,
-    ) -> Result<Option<[f64; 3]>, F::Error> {
-        /// Halvings: as many as there are numbers in between.
-        const HALVINGS: usize = 16;
-        let ends = self.brackets.iter().flat_map(|bracket| bracket.ends);
-        let values: Vec<f32> = points.ask(field, region, ends)?.to_vec();
-        for (bracket, values) in self.brackets.iter_mut().zip(values.as_chunks().0) {
-            bracket.values = *values;
-            if bracket.values.map(|value| value >= iso) != [false, true] {
-                return Ok(None);
-            }
-        }
-        if self.beside.iter().any(|(_, way)| *way == 0.0) {
-            return Ok(None);
-        }
-        let outward = (self.brackets[0].ends[0][self.axis] - self.brackets[0].ends[1][self.axis]).signum();
-        let mut brackets: Vec<&mut Bracket> = self.brackets.iter_mut().collect();
-        points.halve(field, region, iso, &mut brackets, HALVINGS)?;
-        let height = |n: usize| f64::from(self.brackets[n].middle()[self.axis]);
-        let mut normal = [0.0; 3];
-        normal[self.axis] = 1.0;
-        for (n, &(other, way)) in self.beside.iter().enumerate() {
-            normal[other] = -(height(n + 1) - height(0)) / f64::from(way);
-        }
-        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt() * f64::from(outward);
-        Ok(Some(normal.map(|c| c / length)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! A vertex that may be on an edge, with its crossings by their sides.
 
+use super::super::super::brick::Bricks;
 use super::super::super::surface::unit;
 use super::super::sheet::{Sheet, Start};
 use super::super::side::SharpSide;
@@ -42,15 +43,48 @@ impl<'a> Candidate<'a> {
         quadric::aim(&self.crossings, self.mean)
     }
 
-    /// Where the planes of the two sides with the most crossings meet.
-    pub(super) fn edge(&self) -> Option<EdgeAim> {
-        let mut sides: Vec<(usize, usize)> =
-            (0..self.count).map(|side| (self.sides.iter().filter(|&&of| of == side).count(), side)).collect();
-        sides.sort_by_key(|&(crossings, side)| (usize::MAX - crossings, side));
-        let chosen: Vec<usize> = sides.iter().take(2).map(|&(_, side)| side).collect();
-        let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
-        let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
-        quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
+    /// Where the planes of two sides meet, for all pairs; those with the most crossings first.
+    pub(super) fn edges(&self) -> Vec<EdgeAim> {
+        let crossings = |side: usize| self.sides.iter().filter(|&&of| of == side).count();
+        let mut sides: Vec<usize> = (0..self.count).collect();
+        sides.sort_by_key(|&side| usize::MAX - crossings(side));
+        let pairs = (1..self.count).flat_map(|b| (0..b).map(move |a| [a, b]));
+        let aims = pairs.filter_map(|pair| {
+            let chosen = pair.map(|n| sides[n]);
+            let both = self.crossings.iter().zip(&self.sides).filter(|(_, side)| chosen.contains(side));
+            let both: Vec<Crossing> = both.map(|(crossing, _)| *crossing).collect();
+            quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
+        });
+        aims.collect()
+    }
+
+    /// Whether the field jumps at one of its crossings.
+    pub(super) fn is_at_jump(&self) -> bool {
+        self.crossings.iter().any(|crossing| crossing.signature.is_none())
+    }
+
+    /// A point a little outside of its position and one inside, within the lattice.
+    pub(super) fn across(&self, bricks: &Bricks) -> [[f32; 3]; 2] {
+        /// How far, in cells.
+        const WAY: f32 = 1.0 / 64.0;
+        let mut sum = [0.0; 3];
+        for side in 0..self.count {
+            let of_side = self.crossings.iter().zip(&self.sides).filter(|(_, of)| **of == side);
+            let mut normal = [0.0; 3];
+            of_side.for_each(|(crossing, _)| {
+                normal.iter_mut().zip(crossing.normal).for_each(|(sum, c)| *sum += c);
+            });
+            let normal = unit(normal).unwrap_or_default();
+            sum.iter_mut().zip(normal).for_each(|(sum, c)| *sum += f64::from(c));
+        }
+        let normal = unit(sum).unwrap_or_default();
+        [WAY, -WAY].map(|way| {
+            [0, 1, 2].map(|axis| {
+                let axes = &bricks.axes[axis];
+                let at = self.position[axis] + way * self.sheet.size * normal[axis];
+                at.clamp(axes[0], axes[axes.len() - 1])
+            })
+        })
     }
 
     /// The sides, with the means of what is at their crossings.

@@ -15,18 +15,20 @@
 //!
 //! ```text
 //! probe    each crossed edge of the brick: nearly its crossing, with normal and signature        (probe)
-//! chosen   cells with one sheet, whose crossings differ
-//! look     their crossings, halved to the end, seen from a little inside of the cell, so that
+//! chosen   cells with one sheet, whose crossings differ, or may do
+//! look     their crossings, halved to the end, seen from the end where their side decides, so that
 //!          edges of the solid along lattice planes have a side                                   (probe)
+//! leaning  where the field jumps, normals by crossings beside them                              (leaning)
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
 //! place    in the cell, or up to half a cell beyond: an edge may poke through a side of its cell
 //!          and have no point in it                                                               (place)
-//! keep     if the field is nearer to the iso-value than at the mean
+//! keep     if the field is nearer to the iso-value than at the mean; at a jump, if the surface is there
 //! sides    for each signature: the mean normal, the mean attributes, and the crossings
 //! ```
 
 mod candidate;
 mod crossing;
+mod leaning;
 mod place;
 mod probe;
 mod quadric;
@@ -54,7 +56,7 @@ impl VertexBatch {
         let mut gradient_evaluations = probes.asked;
         let chosen: Vec<&Sheet> = sheets
             .iter()
-            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet.numbers()))
+            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet, iso))
             .collect();
         if chosen.is_empty() {
             return Ok(Done { gradient_evaluations, ..Done::default() });
@@ -70,7 +72,7 @@ impl VertexBatch {
             .collect();
         let wide = place::place(source, brick, self, &mut candidates)?;
         let region = wide.as_ref().unwrap_or(region);
-        candidates = place::nearer(source.field, region, iso, candidates)?;
+        candidates = place::nearer(source.field, (region, source.bricks), iso, candidates)?;
         let sharp = self.put(source, brick, &candidates)?;
         Ok(Done { gradient_evaluations, sharp, ..Done::default() })
     }

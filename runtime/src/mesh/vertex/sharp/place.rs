@@ -46,22 +46,23 @@ pub(super) fn place<F: Field>(
             one.position = clamped(point, bounds);
             continue;
         }
-        let edge = if let EdgeAim::Point(_) = aim {
+        let edges = if let EdgeAim::Point(_) = aim {
             claims.extend(claim(source, brick, n, one, aim));
-            one.edge().unwrap_or(aim)
+            one.edges()
         } else {
-            aim
+            vec![aim]
         };
         let near = beside(&source.bricks.axes, one.sheet.cell);
-        let reached = edge.within(bounds).map(|point| clamped(point, bounds));
-        let beyond = || match edge {
-            EdgeAim::Line(..) => edge.within(near).map(|point| clamped(point, near)),
-            EdgeAim::Point(_) => None,
+        let first = |bounds: Box3| {
+            edges.iter().find_map(|edge| edge.within(bounds)).map(|point| clamped(point, bounds))
         };
-        one.is_beyond = reached.is_none() && beyond().is_some();
-        one.position = reached.or_else(beyond).unwrap_or_else(|| clamped(edge.point(), bounds));
+        let reached = first(bounds);
+        let beyond = if reached.is_none() { first(near) } else { None };
+        one.is_beyond = beyond.is_some();
+        let nearest = || clamped(edges.first().unwrap_or(&aim).point(), bounds);
+        one.position = reached.or(beyond).unwrap_or_else(nearest);
     }
-    if claims.is_empty() && !candidates.iter().any(|one| one.is_beyond) {
+    if claims.is_empty() && !candidates.iter().any(|one| one.is_beyond || one.is_at_jump()) {
         return Ok(None);
     }
     let around = around(source.bricks, brick);
@@ -166,20 +167,23 @@ fn around(bricks: &Bricks, brick: usize) -> Box3 {
     box_of(&bricks.axes, first, [0, 1, 2].map(|axis| origin[axis] + extent[axis] + 1))
 }
 
-/// The candidates at whose places the field is as near to the iso-value as at their means, or nearer. Those
-/// at jumps stay: there the value tells nothing.
+/// The candidates at whose places the field is as near to the iso-value as at their means, or nearer. At a
+/// jump the value tells nothing: there the place is kept if the surface goes through between two points, a
+/// little outside and inside of it.
 pub(super) fn nearer<'a, F: Field>(
     field: &F,
-    region: &F::Region,
+    (region, bricks): (&F::Region, &Bricks),
     iso: f32,
     candidates: Vec<Candidate<'a>>,
 ) -> Result<Vec<Candidate<'a>>, F::Error> {
     let mut points = BracketPoints::default();
-    let both = candidates.iter().flat_map(|one| [one.position, one.mean.map(|c| c as f32)]);
+    let both = candidates.iter().flat_map(|one| {
+        if one.is_at_jump() { one.across(bricks) } else { [one.position, one.mean.map(|c| c as f32)] }
+    });
     let values = points.ask(field, region, both)?;
     let away = |value: f32| (value - iso).abs();
-    let kept = candidates.into_iter().zip(values.as_chunks::<2>().0).filter(|(one, [here, mean])| {
-        one.crossings.iter().any(|crossing| crossing.signature.is_none()) || away(*here) <= away(*mean)
+    let kept = candidates.into_iter().zip(values.as_chunks::<2>().0).filter(|(one, [here, other])| {
+        if one.is_at_jump() { *here < iso && *other >= iso } else { away(*here) <= away(*other) }
     });
     Ok(kept.map(|(one, _)| one).collect())
 }

@@ -4,57 +4,82 @@ use super::super::super::field::Field;
 use super::super::bracket::{BracketPoints, CrossedEdges};
 use super::super::sheet::Sheet;
 use super::crossing::{Crossing, SHARP, dot};
+use super::leaning;
 
-/// The way from a crossing towards the mean of its sheet's, at which it is looked at.
-const INWARD: f64 = 1.0 / 256.0;
+/// The distance from the surface, in cells, from which on an estimate of a crossing tells nothing.
+const OFF: f64 = 1.0 / 16384.0;
 
 /// What decides at all crossed edges of a brick, nearly.
 pub(super) struct Probes {
-    normals: Vec<Option<[f64; 3]>>,
-    signatures: Vec<u32>,
+    found: Vec<Decided>,
     /// Points at which field and gradient were evaluated.
     pub(super) asked: u64,
 }
 
 impl Probes {
-    /// Whether crossings differ by what decides, and by their normals.
-    pub(super) fn differ(&self, edges: &[u32]) -> bool {
-        let signature = |edge: u32| self.signatures[edge as usize];
+    /// Whether crossings of a sheet differ by what decides, and by their normals; or may do, because the
+    /// estimate of one is off the surface. So it is where the field has a kink along the edge.
+    pub(super) fn differ(&self, sheet: &Sheet, iso: f32) -> bool {
+        let edges = sheet.numbers();
+        let of = |edge: u32| &self.found[edge as usize];
+        if edges.iter().any(|&edge| of(edge).is_off(iso, sheet.size)) {
+            return true;
+        }
+        let signature = |edge: u32| of(edge).signature;
         if edges.iter().all(|&edge| signature(edge) == signature(edges[0])) {
             return false;
         }
         edges.iter().enumerate().any(|(n, &a)| {
             edges[..n].iter().any(|&b| {
-                let normals = self.normals[a as usize].zip(self.normals[b as usize]);
+                let normals = of(a).normal().zip(of(b).normal());
                 signature(a) != signature(b) && normals.is_none_or(|(a, b)| dot(a, b) < SHARP)
             })
         })
     }
 }
 
-/// For each point its unit normal, if there is one, and its signature.
-type DecidedPoints = (Vec<Option<[f64; 3]>>, Vec<u32>);
-
 /// For each sheet its crossings, if all of them have normals; and how many points were asked for gradients.
 type SheetCrossings = (Vec<Option<Vec<Crossing>>>, u64);
 
-/// Field, gradient and signature at some points: the unit normals, if there are any, and the signatures.
-fn decided<F: Field>(field: &F, region: &F::Region, points: &[[f32; 3]]) -> Result<DecidedPoints, F::Error> {
+/// The field at a point.
+struct Decided {
+    value: f32,
+    slope: [f64; 3],
+    signature: u32,
+}
+
+impl Decided {
+    /// The unit normal away from the inside, if there is one.
+    fn normal(&self) -> Option<[f64; 3]> {
+        let length = dot(self.slope, self.slope).sqrt();
+        (length > 0.0 && length.is_finite()).then(|| self.slope.map(|c| -c / length))
+    }
+
+    /// Whether the point is off the surface by its gradient, in cells of this size.
+    fn is_off(&self, iso: f32, size: f32) -> bool {
+        let reach = dot(self.slope, self.slope).sqrt() * OFF * f64::from(size);
+        let is_near = (f64::from(self.value) - f64::from(iso)).abs() <= reach;
+        !is_near
+    }
+}
+
+/// Field, gradient and signature at some points.
+fn decided<F: Field>(field: &F, region: &F::Region, points: &[[f32; 3]]) -> Result<Vec<Decided>, F::Error> {
     let count = points.len();
     if count == 0 {
-        return Ok((Vec::new(), Vec::new()));
+        return Ok(Vec::new());
     }
     let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f32>>());
-    let (mut values, mut signatures) = (vec![0.0; count], vec![0.0; count]);
+    let (mut values, mut signatures) = (vec![0.0; count], vec![0.0_f32; count]);
     let mut gradient = [0; 3].map(|_| vec![0.0; count]);
     let slopes = gradient.each_mut().map(Vec::as_mut_slice);
     field.decided(region, [&x, &y, &z], &mut values, slopes, &mut signatures)?;
-    let normal = |n: usize| {
-        let slope = gradient.each_ref().map(|plane| -f64::from(plane[n]));
-        let length = dot(slope, slope).sqrt();
-        (length > 0.0 && length.is_finite()).then(|| slope.map(|c| c / length))
+    let at = |n: usize| Decided {
+        value: values[n],
+        slope: gradient.each_ref().map(|plane| f64::from(plane[n])),
+        signature: signatures[n].to_bits(),
     };
-    Ok(((0..count).map(normal).collect(), signatures.into_iter().map(f32::to_bits).collect()))
+    Ok((0..count).map(at).collect())
 }
 
 /// Looks at all crossed edges, nearly at their crossings.
@@ -65,58 +90,77 @@ pub(super) fn probe<F: Field>(
     crossed: &mut CrossedEdges,
 ) -> Result<Probes, F::Error> {
     let points = crossed.estimated(field, region, iso)?;
-    let (normals, signatures) = decided(field, region, &points)?;
-    Ok(Probes { normals, signatures, asked: points.len() as u64 })
+    Ok(Probes { found: decided(field, region, &points)?, asked: points.len() as u64 })
 }
 
-/// Looks at the crossings of some sheets, from a little inside of their cells. `None` for a sheet with a
-/// crossing that has no normal. Also returns the number of points at which the gradient was evaluated.
+/// Looks at the crossings of some sheets. `None` for a sheet with a crossing that has no normal. Also returns
+/// the number of points at which the gradient was evaluated.
+///
+/// Two operands may decide at the ends of what is left of an edge, if it is crossed next to an edge of the
+/// surface, or on it. There the field bends: see [`deciding_end`].
 pub(super) fn look<F: Field>(
     field: &F,
     region: &F::Region,
     iso: f32,
     (sheets, crossed): (&[&Sheet], &CrossedEdges),
 ) -> Result<SheetCrossings, F::Error> {
-    let mut crossings = Vec::new();
-    let mut walls = Vec::new();
-    for sheet in sheets {
-        let mut mean = [0.0; 3];
-        for edge in sheet.crossed(crossed) {
-            mean.iter_mut().zip(edge.crossing()).for_each(|(sum, c)| *sum += f64::from(c));
-        }
-        let mean = mean.map(|sum| sum / sheet.numbers().len() as f64);
-        for edge in sheet.crossed(crossed) {
-            let place = edge.crossing();
-            let towards = |axis: usize| {
-                let from = f64::from(place[axis]);
-                (from + INWARD * (mean[axis] - from)) as f32
-            };
-            let seen = if edge.is_jump() { edge.inside() } else { [0, 1, 2].map(towards) };
-            if edge.is_jump() {
-                walls.push((crossings.len(), edge.leaning(mean, sheet.size, sheet.cell)));
-            }
-            crossings.push(Crossing { place, seen, normal: [0.0; 3], signature: None });
-        }
-    }
-    let seen: Vec<[f32; 3]> = crossings.iter().map(|crossing| crossing.seen).collect();
-    let (mut normals, signatures) = decided(field, region, &seen)?;
+    let edges = || sheets.iter().flat_map(|sheet| sheet.crossed(crossed));
+    let ends: Vec<[f32; 3]> = edges().flat_map(|edge| [edge.outside(), edge.inside()]).collect();
+    let ends_found = decided(field, region, &ends)?;
+    let mut both = ends.as_chunks::<2>().0.iter().zip(ends_found.as_chunks::<2>().0);
     let mut points = BracketPoints::default();
-    for (n, leaning) in &mut walls {
-        normals[*n] = leaning.normal(field, region, iso, &mut points)?;
+    let mut found = Vec::new();
+    for sheet in sheets {
+        let (mut crossings, mut unseen) = (Vec::new(), Vec::new());
+        for (edge, (ends, at)) in sheet.crossed(crossed).zip(both.by_ref()) {
+            let place = edge.crossing();
+            let end = if edge.is_jump() { 1 } else { deciding_end(ends, at) };
+            let (signature, normal) = if edge.is_jump() {
+                (None, leaning::normal(field, region, iso, (sheet, edge), &mut points)?)
+            } else {
+                (Some(at[end].signature), at[end].normal())
+            };
+            if normal.is_none() {
+                unseen.push(crossings.len());
+            }
+            let normal = normal.unwrap_or_default();
+            crossings.push(Crossing { place, seen: ends[end], normal, signature });
+        }
+        found.push(with_walls(crossings, &unseen, sheet.size));
     }
-    for (crossing, signature) in crossings.iter_mut().zip(signatures) {
-        crossing.signature = Some(signature);
+    Ok((found, ends.len() as u64))
+}
+
+/// The end at which the operand decides that has the crossing: 0 for the outer one, 1 for the inner one. If
+/// the field bends down on the way in, the smaller operand decides, and it has the crossing whose value at
+/// the outer end is outside; if up, the larger one, whose value at the inner end is inside.
+fn deciding_end([outside, inside]: &[[f32; 3]; 2], at: &[Decided; 2]) -> usize {
+    if at[0].signature == at[1].signature {
+        return 1;
     }
-    walls.iter().for_each(|(n, _)| crossings[*n].signature = None);
-    let (asked, mut rest) = (crossings.len() as u64, &crossings[..]);
-    let mut rest_of_normals = &normals[..];
-    let found = sheets.iter().map(|sheet| {
-        let count = sheet.numbers().len();
-        let (mine, after) = rest.split_at(count);
-        let (normals, normals_after) = rest_of_normals.split_at(count);
-        (rest, rest_of_normals) = (after, normals_after);
-        let both = mine.iter().zip(normals);
-        both.map(|(crossing, normal)| normal.map(|normal| Crossing { normal, ..*crossing })).collect()
-    });
-    Ok((found.collect(), asked))
+    let way: [f64; 3] = std::array::from_fn(|axis| f64::from(inside[axis]) - f64::from(outside[axis]));
+    let [outer, inner] = at.each_ref().map(|at| dot(at.slope, way));
+    usize::from(outer < inner)
+}
+
+/// Crossings of a sheet of a cell of this size, where those without a normal get that of the wall that they
+/// are on. `None` if one of them is on no other's wall.
+fn with_walls(mut crossings: Vec<Crossing>, unseen: &[usize], size: f32) -> Option<Vec<Crossing>> {
+    /// The distance from a wall, in cells, up to which a crossing is on it.
+    const NEAR: f64 = 1.0 / 256.0;
+    for &n in unseen {
+        let Crossing { place, signature, .. } = crossings[n];
+        let others = crossings.iter().enumerate().filter(|(other, _)| !unseen.contains(other));
+        let walls = others.map(|(_, crossing)| crossing).filter(|crossing| crossing.signature.is_none());
+        let distance = |wall: &&Crossing| {
+            let way = std::array::from_fn(|axis| f64::from(place[axis]) - f64::from(wall.place[axis]));
+            dot(wall.normal, way).abs()
+        };
+        let nearest = walls.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        if signature.is_some() || distance(&nearest) > NEAR * f64::from(size) {
+            return None;
+        }
+        crossings[n].normal = nearest.normal;
+    }
+    Some(crossings)
 }
