@@ -21,7 +21,7 @@ const HALVINGS: usize = 19;
 /// on top.
 const BENT: f64 = 1.0 / 128.0;
 
-/// The unit normal away from the inside of the wall at a crossed edge of a sheet; `None` if it cannot be seen.
+/// The unit normal away from the inside of the wall at a crossed edge of a sheet; `None` if it is not seen.
 pub(super) fn normal<F: Field>(
     field: &F,
     region: &F::Region,
