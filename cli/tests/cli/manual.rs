@@ -4,13 +4,14 @@ use std::fs;
 
 use crate::folder::Folder;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "mesh",
     "render",
     "contour",
     "sample",
     "eval",
     "convert",
+    "diff",
     "show",
     "count",
     "stats",
