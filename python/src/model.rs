@@ -2,10 +2,11 @@
 
 use std::sync::{Arc, OnceLock};
 
-use jbt::{AttributeGroup, CheckedTree, Compiled, Engine, Mixing, Query, Scene, Tree};
+use jbt::{AttributeGroup, CheckedTree, Compiled, Engine, Mixing, Query, Scene, SceneFolder, Tree};
 use jbt_model::model::Model;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
 use jbt_text::Options;
+use jbt_text::files::Files;
 use pyo3::prelude::*;
 
 use crate::error::{OrRaise as _, Refusal, refused};
@@ -110,7 +111,9 @@ impl PyModel {
         object: Option<String>,
         parameters: Vec<(String, f64)>,
     ) -> PyResult<Self> {
-        let options = Options { parameters, object, ..Options::default() };
+        // Files that the scene names are opened beneath its folder.
+        let files = Files::new(Arc::new(SceneFolder::of(&path)));
+        let options = Options { parameters, object, files, ..Options::default() };
         Ok(Self::read(CallEffort::quiet(py).run(move |_| Scene::load_with(path, &options))?))
     }
 

@@ -49,7 +49,8 @@ def test_edges_are_sharp_and_split(tmp_path: Path) -> None:
     mesh.save(tmp_path / "a.ply")
     assert b"element vertex %d" % len(split.vertices) in (tmp_path / "a.ply").read_bytes()
     mesh.save(tmp_path / "a.obj")
-    assert sum(line.startswith("v ") for line in (tmp_path / "a.obj").open()) == len(mesh.vertices)
+    lines = (tmp_path / "a.obj").read_text().splitlines()
+    assert sum(line.startswith("v ") for line in lines) == len(mesh.vertices)
 
 
 def test_arrays_own_their_memory(peanut: jbt.Model) -> None:

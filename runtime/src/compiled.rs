@@ -85,7 +85,8 @@ impl ModelProgram for DecisionProgram {
 pub(crate) struct Decisions(Arc<DecisionProgram>);
 
 impl Decisions {
-    /// Field, the three components of the gradient, and the signature at points of a region that has these rows.
+    /// Field, the three components of the gradient, and the signature at points of a region that has these
+    /// rows.
     pub(crate) fn eval_region(
         &self,
         selection: &Selection,

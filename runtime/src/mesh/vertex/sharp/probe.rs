@@ -11,7 +11,7 @@ const OFF: f64 = 1.0 / 16384.0;
 
 /// What decides at all crossed edges of a brick, nearly.
 pub(super) struct Probes {
-    found: Vec<Decided>,
+    found: Vec<DecidedPoint>,
     /// Points at which field and gradient were evaluated.
     pub(super) asked: u64,
 }
@@ -42,13 +42,13 @@ impl Probes {
 type SheetCrossings = (Vec<Option<Vec<Crossing>>>, u64);
 
 /// The field at a point.
-struct Decided {
+struct DecidedPoint {
     value: f32,
     slope: [f64; 3],
     signature: u32,
 }
 
-impl Decided {
+impl DecidedPoint {
     /// The unit normal away from the inside, if there is one.
     fn normal(&self) -> Option<[f64; 3]> {
         let length = dot(self.slope, self.slope).sqrt();
@@ -64,7 +64,11 @@ impl Decided {
 }
 
 /// Field, gradient and signature at some points.
-fn decided<F: Field>(field: &F, region: &F::Region, points: &[[f32; 3]]) -> Result<Vec<Decided>, F::Error> {
+fn decided<F: Field>(
+    field: &F,
+    region: &F::Region,
+    points: &[[f32; 3]],
+) -> Result<Vec<DecidedPoint>, F::Error> {
     let count = points.len();
     if count == 0 {
         return Ok(Vec::new());
@@ -74,7 +78,7 @@ fn decided<F: Field>(field: &F, region: &F::Region, points: &[[f32; 3]]) -> Resu
     let mut gradient = [0; 3].map(|_| vec![0.0; count]);
     let slopes = gradient.each_mut().map(Vec::as_mut_slice);
     field.decided(region, [&x, &y, &z], &mut values, slopes, &mut signatures)?;
-    let at = |n: usize| Decided {
+    let at = |n: usize| DecidedPoint {
         value: values[n],
         slope: gradient.each_ref().map(|plane| f64::from(plane[n])),
         signature: signatures[n].to_bits(),
@@ -134,7 +138,7 @@ pub(super) fn look<F: Field>(
 /// The end at which the operand decides that has the crossing: 0 for the outer one, 1 for the inner one. If
 /// the field bends down on the way in, the smaller operand decides, and it has the crossing whose value at
 /// the outer end is outside; if up, the larger one, whose value at the inner end is inside.
-fn deciding_end([outside, inside]: &[[f32; 3]; 2], at: &[Decided; 2]) -> usize {
+fn deciding_end([outside, inside]: &[[f32; 3]; 2], at: &[DecidedPoint; 2]) -> usize {
     if at[0].signature == at[1].signature {
         return 1;
     }
