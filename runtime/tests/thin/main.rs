@@ -103,7 +103,9 @@ fn examples_are_silent() {
         // Some have no end of their own.
         let Ok(made) = Polygonize::default().mesh(&Compiler::new(), &tree).run() else { return };
         let found = made.report.thin.expect("it was searched for");
-        assert_eq!(found.places, 0, "{name}: {found:?}");
+        // Two flagpoles of the castle are thinner than a cell, and said to be.
+        let places = if name == "castle.jbt" { 2 } else { 0 };
+        assert_eq!(found.places, places, "{name}: {found:?}");
     });
 }
 
