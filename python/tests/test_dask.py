@@ -202,6 +202,10 @@ def test_a_full_disk_is_named(hero: jbt.Model, client: Any, tmp_path: Path) -> N
     assert caught.value.place is not None
     # Neither an index nor any part of a part.
     assert not (tmp_path / "index.json").exists()
+    # A part that another worker was writing meanwhile fails as well.
+    end = time.monotonic() + 20
+    while list(tmp_path.glob(".jbt-*")) and time.monotonic() < end:
+        time.sleep(0.05)
     assert not list(tmp_path.glob(".jbt-*"))
     for path in tmp_path.glob("*.jbtblock"):
         _jbt.block_facts(path.read_bytes())
