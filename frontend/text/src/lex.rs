@@ -289,7 +289,7 @@ mod tests {
         }
         assert_eq!(
             shown.join("; "),
-            "Word a_1; Mark(123) {; Number 2.5e-3; Number .5; Number 3.; Unknown 1e; Unknown 2x; Unknown é; \
+            "Word a_1; Mark(123) {; Number 2.5e-3; Number .5; Number 3.; Unknown 1e; Unknown 2x; Word é; \
              Unknown $; Mark(45) -; Mark(45) -; Number 1; Quoted \"#f80\"; Quoted \"#f8 {\"; Unknown \""
         );
     }
