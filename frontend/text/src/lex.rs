@@ -48,14 +48,14 @@ impl Token {
 
 /// A place to which a cursor can go back.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct TextPlace<'a> {
     text: &'a str,
     base: usize,
     /// From the beginning of this text.
     at: usize,
 }
 
-impl<'a> Place<'a> {
+impl<'a> TextPlace<'a> {
     /// The beginning of a text whose first byte has this place.
     pub(super) fn start(text: &'a str, base: usize) -> Self {
         let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
@@ -77,17 +77,17 @@ impl<'a> Lexer<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         let token = Token { kind: TokenKind::End, start: 0, end: 0 };
         let mut lexer = Self { text, base: 0, token, previous_end: 0 };
-        lexer.jump(Place::start(text, 0));
+        lexer.jump(TextPlace::start(text, 0));
         lexer
     }
 
     /// The place before the next token.
-    pub(super) fn place(&self) -> Place<'a> {
-        Place { text: self.text, base: self.base, at: self.token.start - self.base }
+    pub(super) fn place(&self) -> TextPlace<'a> {
+        TextPlace { text: self.text, base: self.base, at: self.token.start - self.base }
     }
 
     /// Goes on at another place.
-    pub(super) fn jump(&mut self, place: Place<'a>) {
+    pub(super) fn jump(&mut self, place: TextPlace<'a>) {
         (self.text, self.base) = (place.text, place.base);
         self.previous_end = place.base + place.at;
         self.token = self.scan(self.previous_end);

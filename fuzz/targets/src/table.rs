@@ -6,7 +6,7 @@ use crate::read::{format_word, read};
 use crate::{engines, function, mesh, points, print, prune};
 
 /// What is done with bytes.
-type Run = Box<dyn Fn(&[u8])>;
+type TargetRun = Box<dyn Fn(&[u8])>;
 
 /// Something that takes bytes.
 pub struct FuzzTarget {
@@ -16,7 +16,7 @@ pub struct FuzzTarget {
     pub program: &'static str,
     /// What holds for any bytes.
     pub what: String,
-    run: Run,
+    run: TargetRun,
 }
 
 impl std::fmt::Debug for FuzzTarget {

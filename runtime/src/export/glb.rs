@@ -150,7 +150,7 @@ struct BufferLayout {
 
 /// A plane of numbers: its view, and the width of its elements.
 #[derive(Clone, Copy)]
-struct Plane {
+struct BufferPlane {
     view: usize,
     component: u32,
     width: usize,
@@ -158,18 +158,18 @@ struct Plane {
 
 impl BufferLayout {
     /// Adds a view of `count` elements of `width` four-byte numbers.
-    fn plane(&mut self, target: u32, component: u32, width: usize, count: usize) -> Plane {
+    fn plane(&mut self, target: u32, component: u32, width: usize, count: usize) -> BufferPlane {
         let length = 4 * width as u64 * count as u64;
         let view = self.views.len();
         self.views
             .push(json!({ "buffer": 0, "byteOffset": self.bytes, "byteLength": length, "target": target }));
         self.bytes += length;
-        Plane { view, component, width }
+        BufferPlane { view, component, width }
     }
 
     /// Adds an accessor to some elements of a plane. Returns its index.
-    fn accessor(&mut self, plane: Plane, elements: Range<usize>) -> usize {
-        let Plane { view, component, width } = plane;
+    fn accessor(&mut self, plane: BufferPlane, elements: Range<usize>) -> usize {
+        let BufferPlane { view, component, width } = plane;
         let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][width - 1];
         let count = elements.len();
         let mut accessor =
@@ -190,7 +190,7 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
     }
     let count = mesh.positions.len();
     let mut layout = BufferLayout::default();
-    let mut planes: Vec<(String, Plane)> = Vec::new();
+    let mut planes: Vec<(String, BufferPlane)> = Vec::new();
     let mut plane = |name: &str, width: usize| {
         planes.push((name.to_owned(), layout.plane(ARRAY_BUFFER, FLOAT, width, count)));
     };

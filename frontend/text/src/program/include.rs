@@ -7,7 +7,7 @@ use jbt_ir::limits::MAX_INCLUDE_DEPTH;
 
 use super::known::Included;
 use crate::files::NamedFile;
-use crate::lex::{Place, Token, TokenKind};
+use crate::lex::{TextPlace, Token, TokenKind};
 use crate::state::Parser;
 use crate::texts::TextFile;
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -97,7 +97,7 @@ impl<'a> Parser<'a> {
     fn scene_text(&mut self, file: &Arc<NamedFile>, token: Token) -> Option<&'a TextFile> {
         let text = std::str::from_utf8(&file.bytes).ok().map(|text| normalized(text).into_owned());
         let text = text.filter(|text| {
-            let place = Place::start(text, 0);
+            let place = TextPlace::start(text, 0);
             let mut lexer = crate::lex::Lexer::new(text);
             lexer.jump(place);
             let first = lexer.next();
@@ -127,7 +127,7 @@ impl<'a> Parser<'a> {
         let (ended, scope) = (self.ended, self.scope.take());
         self.program.open.push((file.file.identity.clone(), file.file.path.clone()));
         (self.muted, self.ended) = (false, false);
-        self.lexer.jump(Place::start(&file.text, file.base));
+        self.lexer.jump(TextPlace::start(&file.text, file.base));
         self.file();
         self.program.open.pop();
         self.program.calls = around;

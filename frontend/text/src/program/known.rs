@@ -9,7 +9,7 @@ use std::sync::Arc;
 use jbt_ir::limits::MAX_SCENE_BYTES;
 
 use crate::files::FileReader;
-use crate::lex::Place;
+use crate::lex::TextPlace;
 use crate::texts::Texts;
 use jbt_model::diagnostic::Span;
 use jbt_model::label::LabelCall;
@@ -147,7 +147,7 @@ pub(crate) struct ProgramDefinition<'a> {
     /// Their names, and what they are if they are not given.
     pub(super) arguments: Vec<(&'a str, Option<Value>)>,
     /// Behind its `{`.
-    pub(super) body: Place<'a>,
+    pub(super) body: TextPlace<'a>,
     /// The place of the `{`.
     pub(super) open: u32,
     /// The bytes of its body.
@@ -173,7 +173,7 @@ pub(crate) enum BodyKind<'a> {
     /// A definition that is called; where to go on behind it, and what it is known by.
     Call {
         definition: Rc<ProgramDefinition<'a>>,
-        back: Place<'a>,
+        back: TextPlace<'a>,
         key: Option<CallKey>,
     },
     BodyLoop(Box<BodyLoop<'a>>),
@@ -253,7 +253,7 @@ pub(crate) struct BodyLoop<'a> {
     pub(super) turns: Turns,
     /// How many have begun.
     pub(super) begun: usize,
-    pub(super) body: Place<'a>,
+    pub(super) body: TextPlace<'a>,
     /// Its words before the block.
     pub(super) span: Span,
 }

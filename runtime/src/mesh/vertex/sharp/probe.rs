@@ -10,13 +10,13 @@ use super::leaning;
 const OFF: f64 = 1.0 / 16384.0;
 
 /// What decides at all crossed edges of a brick, nearly.
-pub(super) struct Probes {
+pub(super) struct SheetProbes {
     found: Vec<DecidedPoint>,
     /// Points at which field and gradient were evaluated.
     pub(super) asked: u64,
 }
 
-impl Probes {
+impl SheetProbes {
     /// Whether crossings of a sheet differ by what decides, and by their normals; or may do, because the
     /// estimate of one is off the surface. So it is where the field has a kink along the edge.
     pub(super) fn differ(&self, sheet: &Sheet, iso: f32) -> bool {
@@ -92,9 +92,9 @@ pub(super) fn probe<F: Field>(
     region: &F::Region,
     iso: f32,
     crossed: &mut CrossedEdges,
-) -> Result<Probes, F::Error> {
+) -> Result<SheetProbes, F::Error> {
     let points = crossed.estimated(field, region, iso)?;
-    Ok(Probes { found: decided(field, region, &points)?, asked: points.len() as u64 })
+    Ok(SheetProbes { found: decided(field, region, &points)?, asked: points.len() as u64 })
 }
 
 /// Looks at the crossings of some sheets. `None` for a sheet with a crossing that has no normal. Also returns
