@@ -418,7 +418,7 @@ mod tests {
                 translate (0.9 0.2 0) { point { radius 1 } }
             } }",
         );
-        let settings = Polygonize { fineness: Fineness::Cell(0.07), ..Polygonize::default() };
+        let settings = Polygonize { fineness: Fineness::Cell(0.07), sharp: true, ..Polygonize::default() };
         let kernels = Kernels::new(&Compiler::for_engine(Engine::Lanes).compile(&tree), true).unwrap();
         let lattice = settings.lattice(&tree).unwrap();
         let made = |brick: usize| {
