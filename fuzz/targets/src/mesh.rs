@@ -6,22 +6,28 @@ use jbt::{
 };
 
 use crate::engines::text;
-use crate::model::{rng, small_tree};
+use crate::model::{quick_engine, rng, small_tree};
 
 /// Cells along the longest side, at most.
 const MAX_RESOLUTION: usize = 28;
+/// Uses of leaves times cells along two sides, at most: one input takes a second.
+const MAX_WORK: f64 = 6e3;
 
 /// Meshes the model that bytes mean, in its own box or in one that may cut it.
 pub(crate) fn run(bytes: &[u8]) {
     let Some(tree) = small_tree(bytes) else { return };
     let mut rng = rng(bytes);
+    let uses = jbt::statistics::leaf_uses(&tree).max(1);
+    let engine = quick_engine(&mut rng, &tree, &[Engine::Lanes, Engine::Scalar]);
+    let slowness = if engine == Engine::Scalar { 10.0 } else { 1.0 };
+    let affordable = (MAX_WORK / (uses as f64 * slowness)).sqrt() as usize;
     let region = rng.bool().then(|| {
         let half = [1.5, 0.7, 40.0][rng.usize(0..3)];
         Box3::new([-half; 3], [half; 3])
     });
     let polygonize = Polygonize {
         region,
-        fineness: Fineness::Resolution(1 + rng.usize(0..MAX_RESOLUTION)),
+        fineness: Fineness::Resolution(1 + rng.usize(0..MAX_RESOLUTION.min(affordable.max(1)))),
         verify: true,
         thin_parts: rng.bool(),
         sharp: true,
@@ -34,7 +40,6 @@ pub(crate) fn run(bytes: &[u8]) {
         assert!(made.report.closed && is_closed(vertices, triangles), "it is open\n{}", text(bytes));
         assert_eq!(check_manifold(vertices, triangles), Ok(()), "{}", text(bytes));
     }
-    let engine = [Engine::Lanes, Engine::Scalar][rng.usize(0..2)];
     if let Some(other) = mesh(&polygonize, engine, &tree) {
         assert!(bits(&made) == bits(&other), "another mesh by {}\n{}", engine.name(), text(bytes));
     }

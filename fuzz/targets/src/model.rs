@@ -2,13 +2,16 @@
 
 use fastrand::Rng;
 use jbt::text::{Options, parse};
-use jbt::{CheckedTree, Model};
+use jbt::{CheckedTree, Engine, Model};
 use jbt_testkit::random::{Numbers, Random, Settings};
 
 /// Up to so many bytes are seeds. No text of a model is as short.
 const SEEDS: usize = 18;
 /// Leaves along all paths of a model that is compiled for one input.
 const MAX_USES: u64 = 400;
+/// Leaves along all paths of a model that the scalar engine evaluates at hundreds of points: it takes ten times as
+/// long as lanes do.
+const MAX_SCALAR_USES: u64 = 8;
 /// Nodes of such a model.
 const MAX_NODES: usize = 600;
 
@@ -32,6 +35,14 @@ pub(crate) fn small_tree(bytes: &[u8]) -> Option<CheckedTree> {
     let tree = model(bytes, Numbers::Ordinary)?.check().ok()?;
     let is_small = tree.nodes().len() <= MAX_NODES && jbt::statistics::leaf_uses(&tree) <= MAX_USES;
     is_small.then_some(tree)
+}
+
+/// One of some engines that is quick enough for hundreds of points of a model.
+pub(crate) fn quick_engine(rng: &mut Rng, tree: &CheckedTree, engines: &[Engine]) -> Engine {
+    let is_small = jbt::statistics::leaf_uses(tree) <= MAX_SCALAR_USES;
+    let quick: Vec<Engine> =
+        engines.iter().copied().filter(|&engine| is_small || engine != Engine::Scalar).collect();
+    quick[rng.usize(0..quick.len())]
 }
 
 /// Random numbers that are always the same for the same bytes.

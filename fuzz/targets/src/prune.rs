@@ -4,9 +4,10 @@ use fastrand::Rng;
 use jbt::boxes::{ANYTHING, Divisible as _};
 use jbt::{Box3, Classified as _, Compiler, Engine, ErrorKind, Evaluator, Points, Pruner, Query, Region};
 use jbt_testkit::bits::same;
+use jbt_testkit::boxes::{point_in, random_box};
 
 use crate::engines::{answers, evaluator, text};
-use crate::model::{rng, small_tree};
+use crate::model::{quick_engine, rng, small_tree};
 
 /// Boxes that are tried for one model.
 const BOXES: usize = 3;
@@ -17,7 +18,7 @@ const POINTS: usize = 20;
 pub(crate) fn run(bytes: &[u8]) {
     let Some(tree) = small_tree(bytes) else { return };
     let mut rng = rng(bytes);
-    let compiler = Compiler::for_engine(Engine::ALL[rng.usize(0..Engine::ALL.len())]);
+    let compiler = Compiler::for_engine(quick_engine(&mut rng, &tree, &Engine::ALL));
     let query = Query::EVERY[rng.usize(0..Query::EVERY.len())];
     let pruner = match Pruner::new(&compiler, &tree) {
         Ok(pruner) => pruner,
@@ -40,35 +41,20 @@ pub(crate) fn run(bytes: &[u8]) {
             let chosen = rng.usize(0..parts.len());
             (bounds, region) = (parts[chosen], regions.swap_remove(chosen));
         }
-        check_region(&asked, &region, &points_in(&mut rng, &bounds), bytes);
+        check_region(&asked, &region, &points_in(&mut rng, &asked, &bounds), bytes);
     }
 }
 
-/// A closed box in another one, sometimes tiny or flat.
-fn part(rng: &mut Rng, around: &Box3) -> Box3 {
-    let size = [1.0, 0.5, 0.1, 1e-3][rng.usize(0..4)];
-    let mut bounds = Box3::default();
-    for axis in 0..3 {
-        let (low, high) = (around.low[axis], around.high[axis]);
-        let length = if rng.u8(0..20) == 0 { 0.0 } else { (high - low) * size * rng.f32() };
-        let at = low + (high - low - length) * rng.f32();
-        bounds.low[axis] = at.clamp(low, high);
-        bounds.high[axis] = (at + length).clamp(bounds.low[axis], high);
-    }
-    bounds
+fn part(rng: &mut Rng, Box3 { low, high }: &Box3) -> Box3 {
+    let [low, high] = random_box(rng, [*low, *high]);
+    Box3::new(low, high)
 }
 
-/// Points of a box, some on its sides.
-fn points_in(rng: &mut Rng, bounds: &Box3) -> Points {
-    let coordinate = |rng: &mut Rng, axis: usize| {
-        let (low, high) = (bounds.low[axis], bounds.high[axis]);
-        match rng.u8(0..8) {
-            0 => low,
-            1 => high,
-            _ => (low + (high - low) * rng.f32()).clamp(low, high),
-        }
-    };
-    (0..POINTS).map(|_| std::array::from_fn(|axis| coordinate(rng, axis))).collect()
+/// Points of a box, both from the origin of the evaluator's model.
+fn points_in(rng: &mut Rng, evaluator: &Evaluator, Box3 { low, high }: &Box3) -> Points {
+    let mut points = evaluator.points();
+    points.extend((0..POINTS).map(|_| point_in(rng, [*low, *high])));
+    points
 }
 
 fn check_region(evaluator: &Evaluator, region: &Region, points: &Points, bytes: &[u8]) {
@@ -99,7 +85,7 @@ fn check_ranges(
     let mut ranges = vec![[f32::NAN; 2]; boxes.len()];
     pruner.ranges(region, boxes, &mut ranges).expect("the boxes are proper");
     for (bounds, range) in boxes.iter().zip(ranges) {
-        let points = points_in(rng, bounds);
+        let points = points_in(rng, field, bounds);
         for (index, &value) in answers(field, &points).field().iter().enumerate() {
             let inside = range == ANYTHING || (range[0] <= value && value <= range[1]);
             let point = points.get(index);
