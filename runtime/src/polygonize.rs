@@ -205,6 +205,9 @@ pub enum PolygonizeError {
     /// The model's field may differ from zero arbitrarily far away, and no region was given.
     #[error("the model is unbounded: its mesh needs a region")]
     Unbounded,
+    /// Blocks of a model of several parts: its mesh is not that of one field.
+    #[error("the model has parts: blocks are of one solid, so each part is to be meshed by itself")]
+    Parts,
     /// The lattice is impossible or beyond a limit.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -219,7 +222,7 @@ pub enum PolygonizeError {
 impl Classified for PolygonizeError {
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::Empty => ErrorKind::Model,
+            Self::Empty | Self::Parts => ErrorKind::Model,
             Self::Unbounded => ErrorKind::Unbounded,
             Self::Lattice(error) => error.kind(),
             Self::Compile(error) => error.kind(),

@@ -20,6 +20,7 @@ impl Polygonize {
     ) -> Job<'a, Vec<BlockWork>, PolygonizeError> {
         let settings = *self;
         Job::new(move |hook| {
+            of_one_solid(compiled)?;
             let options = settings.options(compiled.tree());
             // Ranges ask nothing else.
             let kernels = Kernels::new(compiled, false)?;
@@ -56,6 +57,7 @@ impl Polygonize {
     ) -> Job<'a, MeshBlock, PolygonizeError> {
         let settings = *self;
         Job::new(move |hook| {
+            of_one_solid(compiled)?;
             let mut reach = LatticeBlock::REACH;
             loop {
                 match settings.block_hooked(compiled, lattice, (block, reach), hook) {
@@ -82,4 +84,8 @@ impl Polygonize {
         made.mesh.orientation = tree.orientation();
         Ok(made)
     }
+}
+
+fn of_one_solid(compiled: &Compiled) -> Result<(), PolygonizeError> {
+    if compiled.tree().parts().is_empty() { Ok(()) } else { Err(PolygonizeError::Parts) }
 }

@@ -1,7 +1,7 @@
 //! Joined blocks are the mesh that is made at once.
 
 use jbt::mesh::{BlockError, MeshBlock, join_blocks};
-use jbt::{Box3, CheckedTree, Compiler, Polygonize};
+use jbt::{Box3, CheckedTree, Compiler, Polygonize, PolygonizeError};
 use jbt_testkit::scene::tree;
 
 use crate::{bits, blocks, settings};
@@ -65,6 +65,20 @@ fn walls_and_creases() {
     let text = "union { within (-0.6 -0.6 -0.6) to (0.7 0.6 0.6) { point { radius 2 } } \
                 difference { point { at (0.5 0.4 0.3) surface_radius 0.8 } segment { from (-2 0 0) to (2 0.5 0) radius 0.7 } } }";
     check("walls", &tree(text), &settings(None, 90), 32);
+}
+
+/// The mesh of parts is one of several fields.
+#[test]
+fn blocks_are_of_one_solid() {
+    let tree = tree(
+        r#"part "a" { point { surface_radius 1 } } part "b" { point { at (1.5 0 0) surface_radius 1 } }"#,
+    );
+    let (settings, compiled) = (settings(None, 40), Compiler::new().compile(&tree));
+    let (lattice, all) = blocks(&settings, &tree, 32);
+    let busy = settings.busy_blocks(&compiled, &lattice, 32).run();
+    assert!(matches!(busy, Err(PolygonizeError::Parts)), "{busy:?}");
+    let block = settings.block(&compiled, &lattice, all[0]).run();
+    assert!(matches!(block, Err(PolygonizeError::Parts)));
 }
 
 #[test]
