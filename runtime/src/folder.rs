@@ -2,7 +2,8 @@
 //! else.
 //!
 //! ```text
-//! name ──► where it leads, links followed, not above the folder ──► a regular file? ──► opened, still the same? ──► bytes
+//! name ──► where it leads, links followed, not above the folder
+//!      ──► a regular file? ──► opened, still the same? ──► bytes
 //! ```
 //!
 //! Nothing is opened for reading before it is known to be a regular file: opening a device may do something,

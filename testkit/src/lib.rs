@@ -7,6 +7,7 @@
 //! wait for the packages of the frontend.
 
 pub mod bits;
+pub mod boxes;
 pub mod golden;
 pub mod points;
 #[cfg(feature = "models")]

@@ -202,3 +202,6 @@ fn put_nameless(file: &File, path: &Path, replace: bool) -> io::Result<()> {
 fn put_nameless(_: &File, _: &Path, _: bool) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
+
+#[cfg(test)]
+mod tests;

@@ -264,3 +264,6 @@ impl FromStr for ColorEncoding {
         find(&ColorEncoding::ALL, word)
     }
 }
+
+#[cfg(test)]
+mod tests;

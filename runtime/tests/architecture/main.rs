@@ -105,7 +105,7 @@ fn files_are_opened_at_three_doors() {
         "runtime/src/scene.rs",
         "runtime/src/export/atomic.rs",
         "runtime/src/export/atomic/nameless.rs",
-        "runtime/src/export/tests.rs",
+        "runtime/src/export/atomic/tests.rs",
     ];
     for name in ["frontend/model", "frontend/text", "frontend/lower", "ir", "jit", "runtime"] {
         for (path, text) in sources(name) {

@@ -25,6 +25,7 @@ use jbt::prune::Region;
 use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_model::tree::Tree;
 use jbt_testkit::bits::same;
+use jbt_testkit::boxes;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, model, tree};
 use jbt_text::print;
@@ -60,32 +61,13 @@ fn pruned_answers_have_the_bits_of_all_rows() {
     assert!(bounded * 2 > points, "most ranges say something");
 }
 
-/// A closed box: ordinary, tiny, flat or a point, near the model.
-fn random_box(rng: &mut Rng, around: &Box3) -> Box3 {
-    let size = [1.0, 0.5, 0.1, 1e-3][rng.usize(0..4)];
-    let mut bounds = Box3::default();
-    for axis in 0..3 {
-        let (low, high) = (around.low[axis], around.high[axis]);
-        let length = (high - low) * size * rng.f32();
-        let length = if rng.u8(0..20) == 0 { 0.0 } else { length };
-        let at = low + (high - low - length) * rng.f32();
-        bounds.low[axis] = at.clamp(low, high);
-        bounds.high[axis] = (at + length).clamp(bounds.low[axis], high);
-    }
-    bounds
+fn random_box(rng: &mut Rng, Box3 { low, high }: &Box3) -> Box3 {
+    let [low, high] = boxes::random_box(rng, [*low, *high]);
+    Box3::new(low, high)
 }
 
-/// Points of a box, corners among them.
-fn points_in(rng: &mut Rng, bounds: &Box3, count: usize) -> Points {
-    let coordinate = |rng: &mut Rng, axis: usize| {
-        let (low, high) = (bounds.low[axis], bounds.high[axis]);
-        match rng.u8(0..8) {
-            0 => low,
-            1 => high,
-            _ => (low + (high - low) * rng.f32()).clamp(low, high),
-        }
-    };
-    (0..count).map(|_| std::array::from_fn(|axis| coordinate(rng, axis))).collect()
+fn points_in(rng: &mut Rng, Box3 { low, high }: &Box3, count: usize) -> Points {
+    (0..count).map(|_| boxes::point_in(rng, [*low, *high])).collect()
 }
 
 fn try_shape(shape: u64, count: usize, tally: &Tally) {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from os import PathLike, fspath
@@ -12,6 +11,7 @@ import numpy as np
 
 from .. import _jbt
 from . import _work
+from ._bricks import Bricks
 from ._run import Place, client_of, edge_of, workers
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def files(
     return Cloud(tuple(chunks), ("radius",) if widths == {4} else ())
 
 
-class CloudBricks:
+class CloudBricks(Bricks):
     """The bricks of particles. The client sees counts, and the few particles that reach farthest."""
 
     def __init__(
@@ -141,8 +141,7 @@ class CloudBricks:
         client: Client,
         retries: int,
     ) -> None:
-        self.client = client
-        self.retries = retries
+        super().__init__(client, retries)
         self.chunks = cloud.futures(client)
         self.each = cloud.each
         facts = client.gather([client.submit(_work.cloud_facts, chunk, cell) for chunk in self.chunks])
@@ -151,12 +150,8 @@ class CloudBricks:
             raise ValueError("xyz: expected at least one point, got none: a model needs a primitive")
         farthest = _work.joined(some)
         model = _work.model_of(farthest, self.each)
-        made, origin = model._native.lattice(resolution, cell, region)
-        self.origin = list(origin)
-        self.native = made
-        first, spacing, cells = made.parts()
-        self.lattice = (list(first), spacing, list(cells))
-        self.shape = _jbt.RowSource(model.with_origin(self.origin)._native, None).shape()
+        self.lay(model._native, resolution, cell, region)
+        self.share(_jbt.RowSource(model.with_origin(self.origin)._native, None).shape())
         self.kinds = self._kinds(farthest)
         self._size(bricks)
         place = (self.lattice, self.origin, self.edge)
@@ -169,8 +164,6 @@ class CloudBricks:
                 self.where.setdefault(number, []).append(chunk)
                 weights[number] = weights.get(number, 0) + count
         self.work = [(self._place(number), weight) for number, weight in sorted(weights.items())]
-        key = "jbt-shape-" + hashlib.sha256(self.shape).hexdigest()
-        self.shared = client.submit(bytes, self.shape, key=key)
 
     def _kinds(self, farthest: dict[str, Any]) -> dict[str, Any] | None:
         """Of each kind of code that the particles have one, so far away that it reaches no brick. None if all

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import warnings
 from os import PathLike, fspath
@@ -18,6 +17,7 @@ from .._model import Model, _region
 from .._progress import watcher
 from .._types import Progress, Region
 from . import _work
+from ._bricks import Bricks
 from ._cloud import Cloud, CloudBricks
 from ._parts import INDEX, Parts, index_of
 from ._run import Place, Window, client_of, edge_of, workers
@@ -153,7 +153,7 @@ def _joined(blocks: list[bytes], facts: dict[str, Any], model: Model | Cloud) ->
     return whole
 
 
-class _ModelBricks:
+class _ModelBricks(Bricks):
     """The bricks of a model that the client has."""
 
     def __init__(
@@ -166,18 +166,12 @@ class _ModelBricks:
         client: Client,
         retries: int,
     ) -> None:
+        super().__init__(client, retries)
         native = model._native
-        made, origin = native.lattice(resolution, cell, region)
-        self.client = client
-        self.retries = retries
-        self.origin = list(origin)
-        self.native = made
-        first, spacing, cells = made.parts()
-        self.lattice = (list(first), spacing, list(cells))
+        self.lay(native, resolution, cell, region)
         self.source = _jbt.RowSource(native, None)
-        self.shape = self.source.shape()
         threads, memory = workers(client)
-        boxes = {(x, y, z): 0 for (x, y, z), _ in native.busy(made, 32, None)}
+        boxes = {(x, y, z): 0 for (x, y, z), _ in native.busy(self.native, 32, None)}
         self.edge = edge_of(bricks, boxes, threads, memory, lambda rows: rows)
         side = self.edge // 32
         weights: dict[Place, int] = {}
@@ -186,8 +180,7 @@ class _ModelBricks:
             weights[place] = weights.get(place, 0) + 1
         # The heaviest first, so that none is left alone at the end; parts are ordered when they are joined.
         self.work = sorted(weights.items(), key=lambda one: -one[1])
-        key = "jbt-shape-" + hashlib.sha256(self.shape).hexdigest()
-        self.shared = client.submit(bytes, self.shape, key=key)
+        self.share(self.source.shape())
 
     def submit(self, place: Place, reach: int, folder: str | None) -> Future:
         rows, _ = self.source.rows(*self.native.bounds(self.edge, list(place), reach))
