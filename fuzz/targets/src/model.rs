@@ -9,8 +9,8 @@ use jbt_testkit::random::{Numbers, Random, Settings};
 const SEEDS: usize = 18;
 /// Leaves along all paths of a model that is compiled for one input.
 const MAX_USES: u64 = 400;
-/// Leaves along all paths of a model that the scalar engine evaluates at hundreds of points: it takes ten times
-/// as long as lanes do.
+/// Leaves along all paths of a model that the scalar engine evaluates at hundreds of points: it takes ten
+/// times as long as lanes do.
 const MAX_SCALAR_USES: u64 = 8;
 /// Nodes of such a model.
 const MAX_NODES: usize = 600;
