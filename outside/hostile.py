@@ -28,8 +28,10 @@ import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SECONDS, MEGABYTES = 1.0, 200
-# Files that are cut off: by folder.
-WHOLE = ["examples/foreign", "frontend/text/tests/readers/files", "fuzz/seeds"]
+# Files that are cut off, and folders of them. Samples of other programs are no part of the project, and may not be there.
+SAMPLES = os.environ.get("JBT_SAMPLES", "../shared/samples")
+WHOLE = ["examples/foreign", "frontend/text/tests/readers/files", "fuzz/seeds", "examples/hero.jbt", "examples/goblet.jbt"]
+WHOLE += [f"{SAMPLES}/{name}" for name in ("parsip/cake.blob", "parsip/complex.blob", "vm/hi.vm", "vm/bear.vm", "brlcad")]
 CUTS = 20
 MANY = 1_000_000
 # A line and a column, a byte, the number of a point; or the file as a whole.
@@ -437,8 +439,8 @@ UNSIZED = {"ply", "xyz", "csv"}
 
 def cut(form, folder):
     """Whole files of a format, cut off at each twentieth."""
-    for place in WHOLE:
-        for path in sorted((ROOT / place).rglob(f"*.{form}")):
+    for place in [ROOT / name for name in WHOLE]:
+        for path in [place] if place.suffix == f".{form}" and place.exists() else sorted(place.rglob(f"*.{form}")):
             whole = path.read_bytes()
             for part in range(CUTS):
                 yield f"{part} twentieths of {path.name}", whole[: len(whole) * part // CUTS]
