@@ -41,7 +41,8 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || progress.run(settings.mesh(&compiler, &tree));
     let mut made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
-    if let Some(flat) = arguments.flat_bottom.and_then(|height| flattened(&scene.model, &made, height)) {
+    let height = arguments.flat_bottom;
+    if let Some(flat) = height.map(|height| flattened(&scene.model, &made, height)).transpose()?.flatten() {
         let tree = flat.check().map_err(|error| scene.failure(&error))?;
         let mut work = || progress.run(settings.mesh(&compiler, &tree));
         made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
@@ -51,7 +52,13 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
     }
     if let Some(until) = arguments.simplify {
-        made.mesh = made.mesh.simplified(until);
+        let whole = std::mem::take(&mut made.mesh);
+        made.mesh = whole.simplified(until);
+        if made.mesh.triangles.is_empty() && !whole.triangles.is_empty() {
+            let message =
+                "--simplify leaves nothing of the mesh: expected less than the thickness of the model";
+            return Err(Failure::Usage(message.to_owned()));
+        }
     }
 
     // The file is written while the mesh is measured.
@@ -100,9 +107,13 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
 }
 
 /// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.
-fn flattened(model: &Model, made: &Polygonized, height: f64) -> Option<Model> {
+///
+/// # Errors
+/// A height that leaves nothing.
+fn flattened(model: &Model, made: &Polygonized, height: f64) -> Result<Option<Model>, Failure> {
     let origin = ModelOrigin::new(made.mesh.origin);
-    let lowest = made.mesh.bounds()?.map(|corner| origin.world(corner.map(f64::from))).low;
+    let Some(bounds) = made.mesh.bounds() else { return Ok(None) };
+    let Box3 { low: lowest, high: highest } = bounds.map(|corner| origin.world(corner.map(f64::from)));
     let cell = made.lattice.spacing();
     let Box3 { low, high } = lattice::bounds(&made.lattice, origin);
     let (mut low, high) = (low.map(|c| c - cell), high.map(|c| c + cell));
@@ -110,8 +121,13 @@ fn flattened(model: &Model, made: &Polygonized, height: f64) -> Option<Model> {
         ModelUp::Y => 1,
         ModelUp::Z => 2,
     };
+    let whole = highest[up] - lowest[up];
+    if height >= whole {
+        let message = format!("--flat-bottom {height} leaves nothing: the model is {whole} high");
+        return Err(Failure::Usage(message));
+    }
     low[up] = lowest[up] + height;
-    Some(Model { root: model.root.within(low, high), ..model.clone() })
+    Ok(Some(Model { root: model.root.within(low, high), ..model.clone() }))
 }
 
 /// What may not be as people expect.
