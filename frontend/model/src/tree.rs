@@ -131,8 +131,8 @@ impl Tree {
         Self::assemble(written.clone(), children.clone(), *span).labelled(label)
     }
 
-    /// The same tree as a part of what stands at a place: its nodes without a place of their own have that one,
-    /// down to those that have one, or that other trees share.
+    /// The same tree as a part of what stands at a place: its nodes without a place of their own have that
+    /// one, down to those that have one, or that other trees share.
     #[must_use]
     pub fn located(mut self, span: Span) -> Self {
         let mut stack = vec![&mut self];
