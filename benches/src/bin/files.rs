@@ -6,8 +6,8 @@
 //!
 //! A structure of a molecule of 52 MB, to the rows of its field; and two databases of 8,000 solids, one of
 //! 1,000 parts, the other of one part that is used 1,000 times, to a mesh over 128 cells along the longest
-//! side. Files are in memory. Each row is a process of its own, whose peak of memory (`VmHWM`, Linux) it tells,
-//! with the file. (`rows` does it for an array of numpy.)
+//! side. Files are in memory. Each row is a process of its own, whose peak of memory (`VmHWM`, Linux) it
+//! tells, with the file. (`rows` does it for an array of numpy.)
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::process::{Command, ExitCode};
