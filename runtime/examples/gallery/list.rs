@@ -65,7 +65,8 @@ impl Entry {
     }
 }
 
-/// All pictures: the examples, those of other programs, what the table has besides, the steps of the tutorial, the members.
+/// All pictures: the examples, those of other programs, what the table has besides, the steps of the
+/// tutorial, the members.
 pub fn entries(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
     let mut entries = Vec::new();
     for scene in scenes(&root.join("examples"))? {
