@@ -41,12 +41,15 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || progress.run(settings.mesh(&compiler, &tree));
     let mut made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+    let mut constants = tree.constants_of_pieces();
     if let Some(flat) = arguments.flat_bottom.and_then(|height| flattened(&scene.model, &made, height)) {
         let tree = flat.check().map_err(|error| scene.failure(&error))?;
+        constants = tree.constants_of_pieces();
         let mut work = || progress.run(settings.mesh(&compiler, &tree));
         made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     }
     drop(progress);
+    options.constants = constants;
     if let Some(name) = &arguments.color_by {
         shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
     }
@@ -96,7 +99,7 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
         )));
     }
     let &MeshArguments { up, colors, unit, palette, .. } = arguments;
-    Ok(ExportOptions { up, colors, unit, palette, name: None })
+    Ok(ExportOptions { up, colors, unit, palette, ..ExportOptions::default() })
 }
 
 /// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.

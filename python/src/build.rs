@@ -3,6 +3,7 @@
 use jbt::tree::{CombinatorKind, MapKind, SkeletonKind, WarpKind};
 use jbt::{AttributeGroup, Mixing, Tree};
 use jbt_model::builder::Vector;
+use jbt_model::constant::LeafConstant;
 use jbt_model::model::Model;
 use jbt_model::written::{Radius, Written, WrittenAttribute, WrittenTextured, WrittenUv};
 use pyo3::prelude::*;
@@ -115,6 +116,18 @@ impl PyModel {
         let declared = self.declared(name, numbers.len());
         let written = Written::Attribute { name: name.into(), value: WrittenAttribute::Numbers(numbers) };
         Ok(declared.with_tree(Tree::new(written, vec![self.tree().clone()])))
+    }
+
+    /// A constant of all leaves below: text or a whole number.
+    fn constant(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let value = if let Ok(number) = given.extract::<i64>() {
+            LeafConstant::Whole(number)
+        } else if let Ok(text) = given.extract::<String>() {
+            LeafConstant::Text(text)
+        } else {
+            return Err(refused(format!("{name}: expected text or a whole number, got {}", given.repr()?)));
+        };
+        Ok(self.with_tree(self.tree().constant(name, value)))
     }
 
     /// Attributes by a pattern of two values.

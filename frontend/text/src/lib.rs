@@ -75,6 +75,7 @@
 //!            | WARP { FIELD value } [ "weighted" ]           weighted: two nodes in the block, the second gives the weight
 //!            | "warp" "(" { NAME "=" expression "," } expression "," expression "," expression ")" [ box ] [ "weighted" ]
 //!                                                            where the node is asked, for each point
+//!            | "constant" NAME ( QUOTED | expression )        what leaves are of: text, or a whole number
 //!            | [ "with" ] NAME given ;                       a declared attribute; "with" if its name is a word of the format
 //! given      = values                                        the same everywhere
 //!            | TEXTURE "{" { "a" values | "b" values | FIELD value } "}"     a pattern in the node's space: a where it is 0, b where it is 1
@@ -139,6 +140,7 @@ mod attribute;
 mod block;
 mod color;
 mod compare;
+mod constant;
 mod expression;
 mod falloff;
 pub mod files;
