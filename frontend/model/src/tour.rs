@@ -3,7 +3,7 @@
 //! ```text
 //! union { color (1 0 0) { translate (2 0 0) { point } } ring }
 //!
-//! enter union    enter color    enter affine    enter point                leave point  leave affine  leave color  enter ring ..
+//! enter union    enter color    enter affine    enter point           leave point    leave affine    ..
 //!                                               color red, map x + 2
 //! ```
 //!
@@ -99,11 +99,10 @@ impl Tour<'_> {
             NodeKind::Attribute { name, .. } => {
                 let mut state = TourState::clone(&step.state);
                 let is_constant = node.kind.constant().is_some();
-                let is_replaced = |&bound: &NodeId| match &self.tree.node(bound).kind {
-                    kind @ NodeKind::Attribute { name: other, .. } => {
-                        other == name && kind.constant().is_some() == is_constant
-                    }
-                    _ => false,
+                let is_replaced = |&bound: &NodeId| {
+                    let kind = &self.tree.node(bound).kind;
+                    matches!(kind, NodeKind::Attribute { name: other, .. } if other == name)
+                        && kind.constant().is_some() == is_constant
                 };
                 match state.bound.iter().position(is_replaced) {
                     Some(place) => state.bound[place] = step.node,

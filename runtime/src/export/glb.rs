@@ -232,13 +232,7 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
         }
         let (mut node, mut shape) = (node(mesh, choices), json!({ "primitives": [primitive] }));
         node["mesh"] = json!(meshes.len());
-        if let Some(name) = piece.name.or(choices.name) {
-            node["name"] = json!(name);
-            shape["name"] = json!(name);
-        }
-        if let Some(extras) = extras(choices.constants_of(place)) {
-            node["extras"] = extras;
-        }
+        say(&mut node, &mut shape, piece.name.or(choices.name), choices.constants_of(place));
         nodes.push(node);
         meshes.push(shape);
     }
@@ -258,6 +252,17 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
         } }]);
     }
     (json, layout.bytes)
+}
+
+/// Says what a piece is called, and what its leaves are of.
+fn say(node: &mut Value, shape: &mut Value, name: Option<&str>, constants: &[ConstantValues]) {
+    if let Some(name) = name {
+        node["name"] = json!(name);
+        shape["name"] = json!(name);
+    }
+    if let Some(extras) = extras(constants) {
+        node["extras"] = extras;
+    }
 }
 
 /// The constants of a piece: a value, or a list where leaves differ.
