@@ -38,7 +38,7 @@
 
 pub use jbt_model::attribute::{AttributeValue, Textured, UvMap};
 pub use jbt_model::bounds::Bounds;
-pub use jbt_model::check::{CheckedNode, FoundNode, OWNER};
+pub use jbt_model::check::{CheckedNode, DEFINED, FoundNode, OWNER};
 pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax, operators};
 pub use jbt_model::constant::{ConstantValues, LARGEST_CONSTANT, LeafConstant};
 pub use jbt_model::expression::Expression;

@@ -23,7 +23,7 @@ param on = 1
 attribute rough 1 default 0.5 dominant
 attribute uv 2
 attribute five 5
-let fn = point { at (0 0 box) surface_radius box falloff blinn { hardness 1 + box edge exact } strength -Größe }
+let fn = point { at (0 0 box) surface_radius box falloff blinn { hardness 1 + box edge exact } strength -(-Größe) }
 part "hub" {
     fn: union { use fn translate (1 0 0) { use fn } }
     constant material "steel \ 5" { rough box / 2 { constant part -17 { polyline { points ((0 0 0) (1 0 box)) radii (0.1 0.2) closed yes radius 1 } } } }

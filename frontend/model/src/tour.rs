@@ -3,12 +3,12 @@
 //! ```text
 //! union { color (1 0 0) { translate (2 0 0) { point } } ring }
 //!
-//! enter union    enter color    enter affine    enter point           leave point    leave affine    ..
-//!                                               color red, map x + 2
+//! enter union   enter color   enter affine   enter point           leave point   leave affine   ..
+//!                                            color red, map x + 2
 //! ```
 //!
-//! Whoever writes a model for another program, draws it or casts rays at its leaves needs no stack of maps and
-//! attributes. A tour is iterative: a chain of a million nodes is a tree like any other.
+//! Whoever writes a model for another program, draws it or casts rays at its leaves needs no stack of maps
+//! and attributes. A tour is iterative: a chain of a million nodes is a tree like any other.
 
 use std::rc::Rc;
 
