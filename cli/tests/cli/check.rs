@@ -152,5 +152,5 @@ fn a_default_is_told_from_a_value() {
     let expected = "x,y,z,field,color.defined\n0,0,0,1,1\n3,0,0,1,0\n9,0,0,0,0";
     assert_eq!(eval("field,color.defined").trim_end(), expected);
     let arguments = ["eval", "a.jbt", "--points", "points.csv", "--query", "rough.defined", "-o", "-"];
-    folder.jbt(&arguments).code(1).says("no attribute is named `rough`");
+    folder.jbt(&arguments).code(2).says("no attribute is named `rough`");
 }
