@@ -123,7 +123,7 @@ fn constants_are_told_compared_and_written() {
             part \"rim\" {{ constant part 17 {{ torus {{ ring_radius 2 tube_radius 0.3 radius 0.4 }} }} }}"
         )
     };
-    let folder = Folder::new().with("a.jbt", &text("steel")).with("b.jbt", &text("oak"));
+    let folder = Folder::new().with("a.jbt", text("steel")).with("b.jbt", text("oak"));
     let told = folder.jbt(&["check", "a.jbt"]).code(0).stdout();
     assert!(
         told.contains("constant     material: \"steel\"") && told.contains("constant     part: 17"),

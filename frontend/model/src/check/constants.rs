@@ -31,49 +31,70 @@ impl CheckedTree {
     /// Cost: the nodes, for each name.
     #[must_use]
     pub fn constants(&self) -> Vec<ConstantValues> {
-        self.constants_below(self.root())
+        self.constants_below(&[self.root()]).remove(0)
     }
 
     /// The constants of each piece of a mesh of this model: of each part, or of the whole model if it has no
     /// parts.
     #[must_use]
     pub fn constants_of_pieces(&self) -> Vec<Vec<ConstantValues>> {
-        let parts = self.parts();
-        if parts.is_empty() {
-            return vec![self.constants()];
-        }
-        parts.into_iter().map(|part| self.constants_below(part.node)).collect()
+        let parts: Vec<NodeId> = self.parts().into_iter().map(|part| part.node).collect();
+        if parts.is_empty() { vec![self.constants()] } else { self.constants_below(&parts) }
     }
 
-    fn constants_below(&self, root: NodeId) -> Vec<ConstantValues> {
+    /// The constants of the leaves below each of these nodes.
+    fn constants_below(&self, roots: &[NodeId]) -> Vec<Vec<ConstantValues>> {
+        let mut all = vec![Vec::new(); roots.len()];
         let names: BTreeSet<&str> =
             self.nodes().iter().filter_map(|node| Some(node.kind.constant()?.0)).collect();
-        let values =
-            |name: &str| ConstantValues { name: name.to_owned(), values: self.values_below(root, name) };
-        names.into_iter().map(values).filter(|found| !found.values.is_empty()).collect()
+        for name in names {
+            let mut search = ConstantSearch::new(self, name);
+            for (root, found) in roots.iter().zip(&mut all) {
+                let values = search.below(*root);
+                if !values.is_empty() {
+                    found.push(ConstantValues { name: name.to_owned(), values });
+                }
+            }
+        }
+        all
     }
+}
 
-    /// The values of a name that some leaf has none of below, so that they count for it.
-    fn values_below(&self, root: NodeId, name: &str) -> Vec<LeafConstant> {
-        let of_name = |kind| NodeKind::constant(kind).filter(|(found, _)| *found == name);
-        // Whether a node has a leaf that has no constant of this name below the node.
-        let mut bare: Vec<bool> = Vec::with_capacity(self.nodes().len());
-        for CheckedNode { kind, children, .. } in self.nodes() {
+/// The search for the values of one name.
+struct ConstantSearch<'a> {
+    tree: &'a CheckedTree,
+    name: &'a str,
+    /// Of each node, whether it has a leaf that has no constant of this name below the node.
+    bare: Vec<bool>,
+    /// Of each node, the last round in which it was met.
+    met: Vec<u32>,
+    round: u32,
+}
+
+impl<'a> ConstantSearch<'a> {
+    fn new(tree: &'a CheckedTree, name: &'a str) -> Self {
+        let mut bare: Vec<bool> = Vec::with_capacity(tree.nodes().len());
+        for CheckedNode { kind, children, .. } in tree.nodes() {
             let below =
                 children.is_empty() || heard(kind, children).iter().any(|child| bare[child.0 as usize]);
-            bare.push(below && of_name(kind).is_none());
+            bare.push(below && kind.constant().is_none_or(|(found, _)| found != name));
         }
+        Self { tree, name, met: vec![0; bare.len()], bare, round: 0 }
+    }
+
+    /// The values that count for some leaf below a node: those with a bare leaf below them.
+    fn below(&mut self, root: NodeId) -> Vec<LeafConstant> {
+        self.round += 1;
         let mut values = Vec::new();
         let mut known: HashSet<&LeafConstant> = HashSet::new();
-        let mut seen = vec![false; self.nodes().len()];
         let mut stack = vec![root];
         while let Some(id) = stack.pop() {
-            if std::mem::replace(&mut seen[id.0 as usize], true) {
+            if std::mem::replace(&mut self.met[id.0 as usize], self.round) == self.round {
                 continue;
             }
-            let CheckedNode { kind, children, .. } = self.node(id);
-            if let Some((_, value)) = of_name(kind)
-                && bare[children[0].0 as usize]
+            let CheckedNode { kind, children, .. } = self.tree.node(id);
+            if let Some((_, value)) = kind.constant().filter(|(found, _)| *found == self.name)
+                && self.bare[children[0].0 as usize]
                 && known.insert(value)
             {
                 values.push(value.clone());
