@@ -3,11 +3,11 @@
 use jbt::tree::{CombinatorKind, MapKind, SkeletonKind, WarpKind};
 use jbt::{AttributeGroup, Mixing, Tree};
 use jbt_model::builder::Vector;
-use jbt_model::constant::LeafConstant;
 use jbt_model::model::Model;
 use jbt_model::written::{Radius, Written, WrittenAttribute, WrittenTextured, WrittenUv};
 use pyo3::prelude::*;
 
+use crate::constant::constant_of;
 use crate::error::refused;
 use crate::falloff::{PyFalloff, PyPattern, named, values};
 use crate::fields::{numbers, vector};
@@ -120,13 +120,7 @@ impl PyModel {
 
     /// A constant of all leaves below: text or a whole number.
     fn constant(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let value = if let Ok(number) = given.extract::<i64>() {
-            LeafConstant::Whole(number)
-        } else if let Ok(text) = given.extract::<String>() {
-            LeafConstant::Text(text)
-        } else {
-            return Err(refused(format!("{name}: expected text or a whole number, got {}", given.repr()?)));
-        };
+        let value = constant_of(name, given)?;
         Ok(self.with_tree(self.tree().constant(name, value)))
     }
 

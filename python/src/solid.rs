@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
+use crate::constant::object;
 use crate::error::{Refusal, refused};
 use crate::evaluator::PyEvaluator;
 use crate::mesh::{fineness, region};
@@ -141,10 +142,7 @@ fn owners_dict(
         paths.push(path);
         let told = PyDict::new(py);
         for (name, value) in of_leaf.into_iter().flatten() {
-            match value {
-                LeafConstant::Whole(number) => told.set_item(name, number)?,
-                LeafConstant::Text(text) => told.set_item(name, text)?,
-            }
+            told.set_item(name, object(py, value)?)?;
         }
         constants.push(told);
     }
