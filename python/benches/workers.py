@@ -1,6 +1,7 @@
 """Workers of Dask on this machine, compared with one process: bytes, seconds, memory.
 
     python benches/workers.py hero [RESOLUTION] [WORKERS]        the octopus, 512 cells; 1, 2, 4 workers
+    python benches/workers.py strokes [RESOLUTION] [WORKERS]     200 curves, all heard everywhere; 448 cells
     python benches/workers.py particles [COUNT CELLS] [WORKERS]  a million particles of an array
     python benches/workers.py files [COUNT CELLS]                2 x 10^7 particles in files, into parts
 
@@ -81,6 +82,20 @@ def hero(resolution: int = 512, only: int = 0) -> None:
     )
 
 
+def strokes(resolution: int = 448, only: int = 0) -> None:
+    rng = np.random.default_rng(3)
+    curves = [
+        jbt.bezier(rng.uniform(-1, 1, (4, 3)), radius=2.0, falloff=jbt.blinn(hardness=8)) for _ in range(200)
+    ]
+    model = jbt.ricci(*curves, exponent=3)
+    table(
+        f"200 strokes at {resolution}",
+        lambda: model.mesh(resolution=resolution, thin=False),
+        lambda: jbt.dask.mesh(model, resolution=resolution),
+        only,
+    )
+
+
 def particles(count: int = 1_000_000, cells: int = 512, only: int = 0) -> None:
     from dask import array
 
@@ -128,7 +143,12 @@ def files(count: int = 20_000_000, cells: int = 512) -> None:
 
 def main() -> None:
     warnings.simplefilter("ignore")
-    words: dict[str, Callable[..., None]] = {"hero": hero, "particles": particles, "files": files}
+    words: dict[str, Callable[..., None]] = {
+        "hero": hero,
+        "strokes": strokes,
+        "particles": particles,
+        "files": files,
+    }
     word, *numbers = sys.argv[1:] or ["hero"]
     words[word](*(int(number) for number in numbers))
 

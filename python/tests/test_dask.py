@@ -181,6 +181,24 @@ def test_a_killed_worker_changes_nothing(hero: jbt.Model, client: Any, moment: f
     client.wait_for_workers(2)
 
 
+def test_workers_come_and_go(hero: jbt.Model) -> None:
+    """A cluster that grows with its work and shrinks after it: from no worker to some, and once more."""
+    whole = hero.mesh(resolution=RESOLUTION, thin=False)
+    with (
+        distributed.LocalCluster(
+            n_workers=0, threads_per_worker=1, dashboard_address=None, memory_limit="2GB", silence_logs=50
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        cluster.adapt(minimum=0, maximum=2, interval="100 ms", wait_count=2)
+        for _ in range(2):
+            same(jbt.dask.mesh(hero, resolution=RESOLUTION, bricks=32, client=client), whole)
+            deadline = time.monotonic() + 30
+            while client.nthreads() and time.monotonic() < deadline:
+                time.sleep(0.1)
+            assert not client.nthreads(), "idle workers leave"
+
+
 def test_a_full_disk_is_named(hero: jbt.Model, client: Any, tmp_path: Path) -> None:
     """A limit on the length of files stands for a disk that is full: a write fails in the middle."""
     client.wait_for_workers(2)

@@ -162,7 +162,7 @@ fn polygonize<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<(Mesh, MeshReport, Crossings), MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    let samples = sample::sample(field, bricks, regions, progress)?;
+    let samples = sample::sample(field, (bricks, regions), None, progress)?;
     let mut crossings = crossing::find(bricks, &samples, options.iso);
     let field_evaluations = samples.len() as u64;
     drop(samples);

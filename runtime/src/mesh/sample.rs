@@ -15,7 +15,10 @@
 //! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick).
 //! That makes 27 *classes* of points; the order of preference of each class is computed at compile time.
 
+mod window;
+
 use std::error::Error;
+use std::ops::Range;
 
 use crate::parallel::*;
 
@@ -25,6 +28,8 @@ use super::field::Field;
 use super::stage::MeshStage;
 use crate::progress::Progress;
 use crate::span::span;
+
+pub(crate) use window::SampleWindow;
 
 /// Marks a class of points that a brick does not own.
 const FOREIGN: u16 = u16::MAX;
@@ -133,11 +138,12 @@ pub(crate) struct BrickSamples {
     rims: Vec<[u16; 27]>,
 }
 
-/// Evaluates the field at every point of every brick, once.
+/// Evaluates the field at every point of every brick, once. With a window, points beyond it are outside,
+/// whatever the field is there.
 pub(crate) fn sample<F: Field>(
     field: &F,
-    bricks: &Bricks,
-    regions: &[F::Region],
+    (bricks, regions): (&Bricks, &[F::Region]),
+    window: Option<SampleWindow>,
     progress: &Progress<'_>,
 ) -> Result<BrickSamples, MeshError<F::Error>> {
     span!("sample");
@@ -157,12 +163,14 @@ pub(crate) fn sample<F: Field>(
             for brick in first..bricks.len().min(first + group) {
                 let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
                 points.collect(bricks, brick, &rims[brick]);
-                let BrickPoints { x, y, z, at_once } = points;
                 let values = &mut values[mine];
-                progress.paced(x.len(), at_once, |some| {
-                    let [x, y, z] = [&x[some.clone()], &y[some.clone()], &z[some.clone()]];
-                    field.field(&regions[brick], x, y, z, &mut values[some]).map_err(MeshError::Field)
-                })?;
+                let ask = |[x, y, z]: [&[f32]; 3], values: &mut [f32]| {
+                    field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)
+                };
+                match window.filter(|window| !window.holds(bricks, brick)) {
+                    None => points.eval(progress, values, ask)?,
+                    Some(window) => points.eval_some((window, bricks), progress, values, ask)?,
+                }
             }
             progress.add(1.0 / total as f64).map_err(MeshError::from)
         },
@@ -212,6 +220,9 @@ struct BrickPoints {
     z: Vec<f32>,
     /// Points that take little time: see [`Progress::paced`].
     at_once: usize,
+    /// The indices of those that are needed, and the field there.
+    chosen: Vec<u32>,
+    found: Vec<f32>,
 }
 
 impl BrickPoints {
@@ -231,6 +242,39 @@ impl BrickPoints {
                 &axes[axis][first..first + count]
             }));
         }
+    }
+
+    /// The field at all points.
+    fn eval<E: Error + 'static>(
+        &mut self,
+        progress: &Progress<'_>,
+        values: &mut [f32],
+        ask: impl Fn([&[f32]; 3], &mut [f32]) -> Result<(), MeshError<E>>,
+    ) -> Result<(), MeshError<E>> {
+        let Self { x, y, z, at_once, .. } = self;
+        progress.paced(x.len(), at_once, |some: Range<usize>| {
+            ask([&x[some.clone()], &y[some.clone()], &z[some.clone()]], &mut values[some])
+        })
+    }
+
+    /// The field at the points of a window; the others are outside.
+    fn eval_some<E: Error + 'static>(
+        &mut self,
+        (window, bricks): (SampleWindow, &Bricks),
+        progress: &Progress<'_>,
+        values: &mut [f32],
+        ask: impl Fn([&[f32]; 3], &mut [f32]) -> Result<(), MeshError<E>>,
+    ) -> Result<(), MeshError<E>> {
+        window.choose(bricks, [&mut self.x, &mut self.y, &mut self.z], &mut self.chosen);
+        let mut found = std::mem::take(&mut self.found);
+        found.resize(self.chosen.len(), 0.0);
+        let done = self.eval(progress, &mut found, ask);
+        values.fill(f32::NEG_INFINITY);
+        for (&index, &value) in self.chosen.iter().zip(&found) {
+            values[index as usize] = value;
+        }
+        self.found = found;
+        done
     }
 
     /// All points with these coordinates, x fastest, then y, then z.

@@ -41,13 +41,11 @@ pub(super) fn is_complete(
 fn leaving(bricks: &Bricks, found: &UnflippedCells, known: [[usize; 3]; 2]) -> Vec<usize> {
     let mut leaving = Vec::new();
     for brick in 0..bricks.len() {
-        let origin = bricks.origin(brick);
+        let (origin, extent) = (bricks.origin(brick), bricks.extent(brick));
         let at = |axis: usize| {
+            let has = |cell: usize| (origin[axis]..origin[axis] + extent[axis]).contains(&cell);
             let ends = known[1][axis] < bricks.axes[axis].len() - 1;
-            [
-                known[0][axis] > 0 && origin[axis] == known[0][axis],
-                ends && origin[axis] + bricks.edge >= known[1][axis],
-            ]
+            [known[0][axis] > 0 && has(known[0][axis]), ends && has(known[1][axis] - 1)]
         };
         let sides = [at(0), at(1), at(2)];
         if sides == [[false; 2]; 3] {
@@ -56,6 +54,9 @@ fn leaving(bricks: &Bricks, found: &UnflippedCells, known: [[usize; 3]; 2]) -> V
         for index in found.starts[brick]..found.starts[brick + 1] {
             let cell = &found.cells[index];
             let place = cell_of(bricks, brick, cell);
+            if !is_in(place, known) {
+                continue;
+            }
             let sheets = default_sheets(cell.signs);
             let leaves = |axis: usize| {
                 sides[axis][0] && place[axis] == known[0][axis] && sheets.pinched(2 * axis)

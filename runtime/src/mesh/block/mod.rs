@@ -38,15 +38,20 @@ use super::indexed::{Attribute, Mesh};
 use super::lattice::Lattice;
 use super::options::Options;
 use super::report::Sides;
+use super::sample::{self, SampleWindow};
 use super::scope::DivisionScope;
 use super::surface::SideCorner;
 use super::vertex::batch::VertexSource;
 use super::vertex::side::SharpVertex;
-use super::{sample, surface, vertex};
+use super::{surface, vertex};
 use crate::job::Hook;
 use crate::progress::{EACH, Progress};
 
 use cells::{cell_of, is_in};
+
+/// Cells beyond a block that are sampled at first: those that have vertices of its triangles, and one more,
+/// at which chains of flips are seen.
+const NEAR: usize = 2;
 
 /// A vertex by its cell in the whole lattice, and its place among the vertices of that cell.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -128,7 +133,10 @@ pub(crate) fn extract<F: Field>(
     let scope = DivisionScope::Cells(known);
     let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    let samples = sample::sample(field, &bricks, &regions, &progress)?;
+    // Two layers of cells are enough, unless a chain of flips leads through them.
+    let known = if reach > LatticeBlock::REACH { known } else { block.cells(lattice, NEAR) };
+    let window = Some(SampleWindow::of_cells(known));
+    let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
     let mut found = crossing::look(&bricks, &samples, options.iso);
     drop(samples);
     let near = block.cells(lattice, 1);

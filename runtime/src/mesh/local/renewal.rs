@@ -58,7 +58,7 @@ impl BrickMesh {
             let scope = touched.as_ref().map_or(DivisionScope::Everything, DivisionScope::Touched);
             let division = divide::divide(field, axes, (&options, scope), MAX_BRICKS, &progress)?;
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
-            let samples = sample::sample(field, &bricks, &regions, &progress)?;
+            let samples = sample::sample(field, (&bricks, &regions), None, &progress)?;
             let mut found = crossing::look(&bricks, &samples, options.iso);
             drop(samples);
             let flipped = match &mut touched {
