@@ -167,7 +167,7 @@ fn sources(path: &Path) -> String {
     while let Some(path) = stack.pop() {
         if let Ok(entries) = fs::read_dir(&path) {
             stack.extend(entries.map(|entry| entry.expect("an entry").path()));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs") && path.exists() {
             text.push_str(&fs::read_to_string(path).expect("text"));
         }
     }
