@@ -1,7 +1,8 @@
 //! Models as Rust: what is printed of every example and of a text with all members is compiled here, and
 //! builds the same model.
 //!
-//! `BLESS=1 cargo test --release -p jbt --test rust` writes `tests/golden/rust/` again; the next run compiles it.
+//! `BLESS=1 cargo test --release -p jbt --test rust` writes `tests/golden/rust/` again; the next run compiles
+//! it.
 
 use std::collections::BTreeMap;
 

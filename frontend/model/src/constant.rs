@@ -8,8 +8,8 @@
 
 use std::fmt;
 
-/// The largest whole number of a constant, and the smallest one negated: numbers of 64-bit floats are exact up
-/// to here, so any reader of a file gets them as they are.
+/// The largest whole number of a constant, and the smallest one negated: floats of 64 bits are exact up to
+/// here, so any reader of a file gets them as they are.
 pub const LARGEST_CONSTANT: i64 = 1 << 53;
 
 /// The value of a constant.

@@ -25,8 +25,9 @@ pub const DEFINED: &str = ".defined";
 
 impl CheckedTree {
     /// The same tree with one more attribute group of one real, `NAME.defined`: the part of the weight at a
-    /// point that comes from leaves which have the attribute `NAME`, from 0 to 1. Where it is 0, the attribute
-    /// is its default because nobody who has a value is heard there: outside of all supports, for one.
+    /// point that comes from leaves which have the attribute `NAME`, from 0 to 1. Where it is 0, the
+    /// attribute is its default because nobody who has a value is heard there: outside of all supports, for
+    /// one.
     ///
     /// Parameters of the tree that is returned cannot be set: set those of this one.
     ///
