@@ -8,6 +8,7 @@ usd-core, whose validators have to find nothing; the meshes that they see are ju
 * volume and area;
 * upright: bounds after the transforms of the file's own scene, by the axis that `up` of --json names; --up says otherwise;
 * colours: 188 for mid grey, and the same colours in all formats that have any;
+* what --simplify, --flat-bottom, --sharp and --color-by make of a mesh, and the materials of --palette;
 * volumes: pyopenvdb of the system's Python sees in a .vdb the numbers of the .npy, and no others (skipped where it is not
   installed: apt-get install python3-openvdb).
 
@@ -271,6 +272,57 @@ class Judge:
                 self.upright(file, self.load(file), told)
 
 
+    def changed(self, scene):
+        """Meshes that options change: fewer triangles, a flat bottom, edges, colours by an attribute."""
+        whole = self.run(scene, "whole.glb", "--resolution", "48")
+        for form in FORMATS:
+            for name, options in [("simple", ["--simplify", "25%"]), ("flat", ["--flat-bottom", "0.3"]), ("sharp", ["--sharp", "on"]),
+                                  ("by", ["--color-by", "rough", "--ramp", "grey"])]:
+                file = f"{name}.{form}"
+                if name == "by" and form == "stl":
+                    continue
+                told = self.run(scene, file, "--resolution", "48", *options)
+                mesh = self.load(file)
+                # The validators of a solid are asked about vertices that are apart at edges, too.
+                self.solid(file, mesh, told)
+                self.upright(file, mesh, told)
+                if name == "simple":
+                    share = told["triangles"] / whole["triangles"]
+                    self.check(share <= 0.25, file, f"{share} of the triangles are left")
+                if name == "flat":
+                    self.flat(file, mesh, told, whole)
+                if name == "by":
+                    colors = self.colored(file, mesh)
+                    self.check(bool(numpy.all(numpy.ptp(colors, axis=1) < 0.005)), file, "the ramp is grey")
+                    self.check(colors.min() < 0.01 and colors.max() > 0.99, file, f"colours from {colors.min()} to {colors.max()}")
+
+    def flat(self, file, mesh, told, whole):
+        """It is cut where it should be, and stands on its bottom."""
+        axis = 1 if told["up"] == "y" else 2
+        self.near(mesh.bounds[0][axis], whole["bounds"][2] + 0.3, 1e-3, file, "the lowest point")
+        lowest = numpy.abs(mesh.triangles[:, :, axis] - mesh.bounds[0][axis]).max(axis=1) < 1e-3
+        area = mesh.area_faces[lowest].sum()
+        self.check(area > 0.01 * mesh.area and bool(numpy.all(mesh.face_normals[lowest][:, axis] < -0.99)), file, f"a bottom of {area}")
+
+    def materials(self, scene):
+        """Base materials of a 3MF file: as many as were asked for, and a triangle has one."""
+        for most in [1, 4]:
+            file = f"palette-{most}.3mf"
+            told = self.run(scene, file, "--resolution", "32", "--palette", str(most))
+            self.solid(file, self.load(file), told)
+            library = lib3mf.get_wrapper()
+            model = library.CreateModel()
+            model.QueryReader("3mf").ReadFromFile(str(self.folder / file))
+            groups, objects = model.GetBaseMaterialGroups(), model.GetMeshObjects()
+            self.check(groups.MoveNext() and objects.MoveNext(), file, "no materials, or no mesh")
+            count = groups.GetCurrentBaseMaterialGroup().GetCount()
+            self.check(1 <= count <= most, file, f"{count} materials")
+            mesh = objects.GetCurrentMeshObject()
+            used = [tuple(properties.PropertyIDs) for properties in mesh.GetAllTriangleProperties()]
+            self.check(all(len(set(each)) == 1 for each in used), file, "a triangle has several materials")
+            self.check(len(set(used)) == count, file, f"{len(set(used))} of {count} materials are used")
+
+
 def scenes(judge, only, resolution):
     for name, color in COLORS.items():
         scene = judge.folder / f"{name}.jbt"
@@ -281,6 +333,8 @@ def scenes(judge, only, resolution):
         judge.grey_bytes(judge.folder / "grey.jbt")
         judge.other_ups(judge.folder / "grey.jbt")
         judge.volumes(ROOT / "examples/hero.jbt")
+        judge.changed(ROOT / "examples/attributes.jbt")
+        judge.materials(ROOT / "examples/koi.jbt")
     for scene in sorted((ROOT / "examples").glob("*.jbt")):
         if only in (None, scene.stem):
             judge.scene(scene.stem, scene, "--resolution", str(resolution))

@@ -6,6 +6,7 @@
 pub mod check;
 #[cfg(feature = "peers")]
 pub mod compare;
+pub mod files;
 pub mod limit;
 pub mod memory;
 pub mod model;

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
-use jbt::mesh::ThinReport;
+use jbt::mesh::{Mesh, Simplify, ThinReport};
 use jbt::{Box3, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized};
 use serde_json::json;
 
@@ -36,25 +36,25 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     scene.warn(quiet);
     let tree = scene.check()?;
     options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
+    options.constants = tree.constants_of_pieces();
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || progress.run(settings.mesh(&compiler, &tree));
     let mut made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
-    let mut constants = tree.constants_of_pieces();
-    if let Some(flat) = arguments.flat_bottom.and_then(|height| flattened(&scene.model, &made, height)) {
+    let height = arguments.flat_bottom;
+    if let Some(flat) = height.map(|height| flattened(&scene.model, &made, height)).transpose()?.flatten() {
         let tree = flat.check().map_err(|error| scene.failure(&error))?;
-        constants = tree.constants_of_pieces();
+        options.constants = tree.constants_of_pieces();
         let mut work = || progress.run(settings.mesh(&compiler, &tree));
         made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     }
     drop(progress);
-    options.constants = constants;
     if let Some(name) = &arguments.color_by {
         shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
     }
     if let Some(until) = arguments.simplify {
-        made.mesh = made.mesh.simplified(until);
+        made.mesh = simplified(&made.mesh, until)?;
     }
 
     // The file is written while the mesh is measured.
@@ -102,10 +102,24 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
     Ok(ExportOptions { up, colors, unit, palette, ..ExportOptions::default() })
 }
 
+/// A mesh of fewer triangles, of which something is left.
+fn simplified(whole: &Mesh, until: Simplify) -> Result<Mesh, Failure> {
+    let mesh = whole.simplified(until);
+    if mesh.triangles.is_empty() && !whole.triangles.is_empty() {
+        let message = "--simplify leaves nothing of the mesh: expected less than the thickness of the model";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(mesh)
+}
+
 /// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.
-fn flattened(model: &Model, made: &Polygonized, height: f64) -> Option<Model> {
+///
+/// # Errors
+/// A height that leaves nothing.
+fn flattened(model: &Model, made: &Polygonized, height: f64) -> Result<Option<Model>, Failure> {
     let origin = ModelOrigin::new(made.mesh.origin);
-    let lowest = made.mesh.bounds()?.map(|corner| origin.world(corner.map(f64::from))).low;
+    let Some(bounds) = made.mesh.bounds() else { return Ok(None) };
+    let Box3 { low: lowest, high: highest } = bounds.map(|corner| origin.world(corner.map(f64::from)));
     let cell = made.lattice.spacing();
     let Box3 { low, high } = lattice::bounds(&made.lattice, origin);
     let (mut low, high) = (low.map(|c| c - cell), high.map(|c| c + cell));
@@ -113,8 +127,13 @@ fn flattened(model: &Model, made: &Polygonized, height: f64) -> Option<Model> {
         ModelUp::Y => 1,
         ModelUp::Z => 2,
     };
+    let whole = highest[up] - lowest[up];
+    if height >= whole {
+        let message = format!("--flat-bottom {height} leaves nothing: the model is {whole} high");
+        return Err(Failure::Usage(message));
+    }
     low[up] = lowest[up] + height;
-    Some(Model { root: model.root.within(low, high), ..model.clone() })
+    Ok(Some(Model { root: model.root.within(low, high), ..model.clone() }))
 }
 
 /// What may not be as people expect.

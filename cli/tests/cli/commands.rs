@@ -58,6 +58,12 @@ fn meshes_of_printers_are_small_flat_and_of_few_materials() {
     let ran = folder.jbt(&["mesh", "ball.jbt", "-o", "a.glb", "--palette", "4"]).code(2);
     assert!(ran.stderr().contains("--palette"), "{}", ran.stderr());
     folder.jbt(&["mesh", "ball.jbt", "-o", "a.glb", "--simplify", "0%"]).code(2);
+    let nothing = |option: &str, value: &str| {
+        folder.jbt(&["mesh", "ball.jbt", "-o", "none.glb", option, value]).code(2).says("leaves nothing");
+    };
+    nothing("--simplify", "100");
+    nothing("--flat-bottom", "100");
+    assert!(!folder.path("none.glb").exists());
 }
 
 #[test]

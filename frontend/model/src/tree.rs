@@ -131,6 +131,20 @@ impl Tree {
         Self::assemble(written.clone(), children.clone(), *span).labelled(label)
     }
 
+    /// The same tree as a part of what stands at a place: its nodes without a place of their own have that one,
+    /// down to those that have one, or that other trees share.
+    #[must_use]
+    pub fn located(mut self, span: Span) -> Self {
+        let mut stack = vec![&mut self];
+        while let Some(tree) = stack.pop() {
+            if let Some(node) = Arc::get_mut(&mut tree.0).filter(|node| node.span.is_none()) {
+                node.span = Some(span);
+                stack.extend(&mut node.children);
+            }
+        }
+        self
+    }
+
     /// Adds a last child to the root. Trees that share the root keep it as it was.
     pub(crate) fn push(&mut self, child: Self) {
         if let Some(node) = Arc::get_mut(&mut self.0) {

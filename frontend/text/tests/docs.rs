@@ -2,6 +2,7 @@
 //! and every scene in them, in the README and in `docs/members/`, where each member has one that shows it, is
 //! a good model. Every member and every example has its picture.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use jbt_model::check::CheckedTree;
@@ -13,6 +14,7 @@ use jbt_model::map::MapKind;
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::texture::TextureKind;
 use jbt_model::warp::WarpKind;
+use jbt_text::import::SceneFormat;
 use jbt_text::{COMMON_FIELDS, Options, functions, parse};
 
 /// What stands before a scene that does not begin with its format: the group and the subtrees that examples
@@ -252,6 +254,33 @@ fn all_examples_are_in_the_gallery() {
     }
 }
 
+/// Every file of another format is read without a complaint about its shape, and has a picture in the gallery
+/// and on the page of its format.
+#[test]
+fn files_of_other_programs_have_pictures() {
+    let (gallery, mut formats) = (page("gallery.md"), BTreeSet::new());
+    let pages: String = ["readers.md", "brlcad.md", "particles.md"].map(page).concat();
+    for entry in std::fs::read_dir(root().join("examples/foreign")).expect("a folder of the project") {
+        let path = entry.expect("it can be read").path();
+        let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
+        let bytes = std::fs::read(&path).expect("it can be read");
+        let format = SceneFormat::of(name, &bytes).expect("a scene");
+        let read = format.read(name, &bytes, &Options::default()).unwrap_or_else(|errors| panic!("{errors}"));
+        read.model.check().unwrap_or_else(|errors| panic!("{errors}"));
+        for warning in &*read.warnings {
+            let is_of_a_picture =
+                ["camera", "light_source"].iter().any(|word| warning.message.contains(word));
+            assert!(is_of_a_picture, "{name}: {}", warning.message);
+        }
+        formats.insert(format.text());
+        let picture = format!("pictures/foreign/{name}.png");
+        has_picture(&picture);
+        assert!(gallery.contains(&format!("<a href=\"../examples/foreign/{name}\"><img src=\"{picture}\"")));
+        assert!(pages.contains(&format!("({picture})")), "a page of its format shows {name}");
+    }
+    assert!(formats.len() >= 6, "{formats:?}");
+}
+
 /// The pictures of all pages and of the README are there, and none is there that no page shows.
 #[test]
 fn pictures_and_pages_belong_together() {
@@ -266,9 +295,13 @@ fn pictures_and_pages_belong_together() {
             has_picture(name);
         }
     }
-    let pictures = ["png", "svg"].into_iter().flat_map(|extension| entries("docs/pictures", extension));
+    let folders = ["docs/pictures", "docs/pictures/foreign"];
+    let pictures = folders
+        .iter()
+        .flat_map(|folder| ["png", "svg"].into_iter().flat_map(|extension| entries(folder, extension)));
     for path in pictures {
-        let name = format!("pictures/{}", path.file_name().expect("a name").display());
+        let path = path.strip_prefix(root().join("docs")).expect("a path below the pages");
+        let name = path.display().to_string();
         assert!(all.contains(&name), "a page shows {name}");
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use jbt::contour::{Detail, ImageDetail, ImageMode, Plane, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
-use jbt::{CheckedTree, Compiler, Diagnostics, Fineness, Picture, Query, SceneFolder, text};
+use jbt::{CheckedTree, Compiler, Fineness, Picture, Query, SceneFolder, text};
 
 use crate::list::{Drawing, Entry, Scene};
 use crate::splash;
@@ -62,25 +62,21 @@ fn coarse(picture: &Picture) -> Picture {
     Picture::new(picture.width(), picture.height(), pixels).expect("as many pixels as before")
 }
 
-/// Reads and checks a scene.
+/// Reads and checks a scene, of whatever format.
 fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
-    let (name, text) = match scene {
-        Scene::Splash => {
-            return Ok(splash::model().check()?);
-        }
-        Scene::File(path) => (path.clone(), fs::read_to_string(path)?),
+    let (path, text) = match scene {
+        Scene::Splash => return Ok(splash::model().check()?),
+        Scene::File(path) => (path.clone(), fs::read(path)?),
         Scene::Readme => {
             let path = root.join("README.md");
             let page = fs::read_to_string(&path)?;
-            (path, first_scene(&page))
+            (path.with_extension("jbt"), first_scene(&page).into_bytes())
         }
     };
-    let name = name.display().to_string();
-    let named = |error: Diagnostics| error.named(&name);
+    let name = path.display().to_string();
     let files = text::files::Files::new(Arc::new(SceneFolder::of(&name)));
     let options = text::Options { files, ..text::Options::default() };
-    let model = text::parse(text.as_bytes(), &options).map_err(named)?;
-    Ok(model.check().map_err(named)?)
+    Ok(jbt::Scene::from_reader(&name, text.as_slice(), &options)?.check()?)
 }
 
 /// The first scene of a page: a fenced block that begins with the format.

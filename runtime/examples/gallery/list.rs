@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use jbt::contour::{ImageMode, Plane};
 use jbt::render::Render;
+use jbt_testkit::samples;
 
 use crate::looks;
 
@@ -14,6 +15,10 @@ const MEMBER: [u32; 2] = [200, 150];
 
 /// Pixels along the longer side of a member's slice.
 const SLICE: usize = 160;
+
+/// Samples of other programs that have a picture. They are no part of the project: a machine without them
+/// keeps the pictures.
+const SAMPLES: [&str; 2] = ["brlcad/moss.asc", "particles/1A8O.pdb"];
 
 /// A picture of the documentation.
 pub struct Entry {
@@ -60,7 +65,7 @@ impl Entry {
     }
 }
 
-/// All pictures: the examples, what the table has besides, the steps of the tutorial, the members.
+/// All pictures: the examples, those of other programs, what the table has besides, the steps of the tutorial, the members.
 pub fn entries(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
     let mut entries = Vec::new();
     for scene in scenes(&root.join("examples"))? {
@@ -68,6 +73,14 @@ pub fn entries(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
         let drawing = Drawing::Render(Box::new(looks::example(&name)));
         entries.push(Entry { name, scene: Scene::File(scene), drawing });
     }
+    let mut foreign = paths(&root.join("examples/foreign"))?;
+    foreign.sort();
+    foreign.extend(SAMPLES.map(|name| samples::root().join(name)).into_iter().filter(|path| path.exists()));
+    entries.extend(foreign.into_iter().map(|scene| {
+        let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let drawing = Drawing::Render(Box::new(looks::example(&name)));
+        Entry { name: format!("foreign/{name}"), scene: Scene::File(scene), drawing }
+    }));
     entries.extend(looks::extras(root)?);
     for scene in scenes(&root.join("docs/tutorial"))? {
         let drawing = Drawing::Render(Box::new(looks::step()));

@@ -165,3 +165,12 @@ pub fn files(folder: &Path, ending: &str) -> Vec<(String, Vec<u8>)> {
     let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
     paths.iter().map(|path| (name(path), std::fs::read(path).unwrap())).collect()
 }
+
+/// What a file is no model for has a place in the file.
+#[track_caller]
+pub fn no_model(read: Read, text: &str) -> String {
+    let model = read(text.as_bytes()).unwrap_or_else(|errors| panic!("{errors}")).model;
+    let errors = model.check().expect_err(text);
+    assert!(errors.iter().all(|error| error.span.is_some()), "{errors}");
+    messages(text.as_bytes(), &errors)
+}

@@ -368,3 +368,11 @@ fn hostile_files_end_soon() {
         assert!(took < SOON, "{took:?}: {}", &text[..80.min(text.len())]);
     }
 }
+
+#[test]
+fn maps_that_make_no_model_have_a_place() {
+    let said = crate::common::no_model(pov, "\nblob { sphere { 0, 1, 1 } scale 1e-300 }");
+    assert!(said.starts_with("scene:2:1: error: the affine map shrinks"), "{said}");
+    let said = crate::common::no_model(pov, "blob {\n  sphere { 0, 1, 1 scale 1e-300 } }");
+    assert!(said.starts_with("scene:2:3: error: the affine map shrinks"), "{said}");
+}

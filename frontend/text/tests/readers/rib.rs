@@ -234,3 +234,9 @@ fn hostile_files_end_soon() {
         assert!(took < SOON, "{took:?}: {}", &text[..40.min(text.len())]);
     }
 }
+
+#[test]
+fn maps_that_make_no_model_have_a_place() {
+    let said = crate::common::no_model(rib, &format!("Scale 1e-300 1 1\nBlobby 1 [1001 0] [{UNIT}] [\"\"]"));
+    assert!(said.starts_with("scene:2:1: error: the affine map is singular"), "{said}");
+}

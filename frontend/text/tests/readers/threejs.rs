@@ -374,3 +374,14 @@ fn hostile_files_end_soon() {
     bytes[12] = 0xff;
     assert!(messages(&bytes, &threejs(&bytes).unwrap_err()).contains("the string is not UTF-8"));
 }
+
+#[test]
+fn numbers_that_make_no_model_have_a_place() {
+    let text = format!(
+        "{{\"type\": \"RootNode\", \"children\": [\n{{\"type\": \"ScalisPoint\", \"volType\": \"dist\", \"density\": 1,\n \
+         \"materials\": [{{}}], \"v\": [{}]}}]}}",
+        vertex([0.0; 3], 1e15)
+    );
+    let said = crate::common::no_model(threejs, &text);
+    assert!(said.starts_with("scene:2:1: error: the radius is 2000000000000000"), "{said}");
+}

@@ -14,7 +14,26 @@ const WATERS: [&[u8]; 7] = [b"HOH", b"WAT", b"DOD", b"H2O", b"TIP", b"TIP3", b"S
 
 /// What tells the atoms of a structure apart: chain, number of the residue, insertion code, and the name of
 /// the atom. Of several with one name, only one is there at a time.
-pub(super) type AtomName = (Vec<u8>, Vec<u8>, Vec<u8>, Vec<u8>);
+///
+/// Of a million names hardly one has more than 12 bytes: those are numbers, and take no memory of their own.
+#[derive(PartialEq, Eq, Hash)]
+pub(super) enum AtomName {
+    /// The bytes, behind the lengths of the first three parts, in 16 bytes.
+    Short(u128),
+    Long([Box<[u8]>; 4]),
+}
+
+impl AtomName {
+    pub(super) fn of(parts: [&[u8]; 4]) -> Self {
+        let lengths = parts.map(<[u8]>::len);
+        if lengths.iter().sum::<usize>() > 12 {
+            return Self::Long(parts.map(Box::from));
+        }
+        let heads = [1, lengths[0] as u8, lengths[1] as u8, lengths[2] as u8];
+        let bytes = heads.iter().chain(parts.into_iter().flatten());
+        Self::Short(bytes.fold(0, |packed, &byte| packed << 8 | u128::from(byte)))
+    }
+}
 
 /// An atom of a file.
 pub(super) struct Atom {
@@ -115,5 +134,28 @@ impl Atoms {
         }
         cloud.warnings = warnings;
         cloud.model(options)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_differ_by_any_part() {
+        let names: [[&[u8]; 4]; 7] = [
+            [b"A", b"1", b"", b"CA"],
+            [b"A", b"1", b"C", b"A"],
+            [b"A", b"1C", b"", b"A"],
+            [b"A1", b"", b"C", b"A"],
+            [b"A", b"1", b"", b"CA\0"],
+            [b"A", b"1", b"", b"a name of many bytes"],
+            [b"A", b"1", b"a", b" name of many bytes"],
+        ];
+        for (at, name) in names.iter().enumerate() {
+            for (other, parts) in names.iter().enumerate() {
+                assert_eq!(AtomName::of(*name) == AtomName::of(*parts), at == other, "{name:?} {parts:?}");
+            }
+        }
     }
 }

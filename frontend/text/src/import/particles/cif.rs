@@ -1,7 +1,7 @@
 //! `.cif`: structures of molecules as tables of words (mmCIF, after STAR). Of all tables, `_atom_site` is
 //! read; the others are skipped.
 
-use super::atoms::{Atom, Atoms};
+use super::atoms::{Atom, AtomName, Atoms};
 use super::elements::element;
 use super::options::ParticleOptions;
 use super::scan::{TextWord, fault};
@@ -238,22 +238,24 @@ impl<'o> AtomTable<'o> {
             let is_none = !token.quoted && matches!(token.word.text, b"." | b"?");
             (!is_none).then_some(token.word)
         };
-        let text = |item: AtomItem| value(item).map_or(Vec::new(), |word| word.text.to_vec());
+        let text = |item: AtomItem| value(item).map_or(&b""[..], |word| word.text);
         if value(AtomItem::Group).is_some_and(|word| !matches!(word.text, b"ATOM" | b"HETATM")) {
             return Ok(());
         }
         let (model, wanted) = (text(AtomItem::Model), self.options.frame.unwrap_or(1).max(1));
         let frame = match &self.model {
             Some((last, frame)) if *last == model => *frame,
-            Some((_, frame)) => frame + 1,
-            None => 1,
+            other => {
+                let frame = other.as_ref().map_or(1, |(_, frame)| frame + 1);
+                self.model = Some((model.to_vec(), frame));
+                frame
+            }
         };
-        self.model = Some((model, frame));
         if frame != wanted {
             return Ok(());
         }
-        let name =
-            (text(AtomItem::Chain), text(AtomItem::Number), text(AtomItem::Insertion), text(AtomItem::Name));
+        let parts = [AtomItem::Chain, AtomItem::Number, AtomItem::Insertion, AtomItem::Name];
+        let name = AtomName::of(parts.map(text));
         let residue = text(AtomItem::Residue);
         let span = row.first().map_or(Span::new(0, 0), |token| token.word.span());
         let number = |item: AtomItem, what: &str| match value(item) {
@@ -266,13 +268,13 @@ impl<'o> AtomTable<'o> {
         };
         let made = || {
             Ok(Atom {
-                element: element(&text(AtomItem::Symbol)),
+                element: element(text(AtomItem::Symbol)),
                 at: [number(AtomItem::X, "x")?, number(AtomItem::Y, "y")?, number(AtomItem::Z, "z")?],
                 occupancy: optional(AtomItem::Occupancy, 1.0, "the occupancy")?,
                 bfac: optional(AtomItem::Bfac, 0.0, "the temperature factor")?,
             })
         };
-        self.atoms.push_of(name, &residue, self.options, made)
+        self.atoms.push_of(name, residue, self.options, made)
     }
 }
 

@@ -1,7 +1,7 @@
 //! `.pdb`: structures of molecules, in columns of fixed width. Blanks separate nothing: numbers and names may
 //! touch.
 
-use super::atoms::{Atom, Atoms};
+use super::atoms::{Atom, AtomName, Atoms};
 use super::elements::element;
 use super::options::ParticleOptions;
 use super::scan::{TextLine, TextLines, fault};
@@ -46,12 +46,11 @@ fn read_atom(
     atoms: &mut Atoms,
     options: &ParticleOptions,
 ) -> Result<(), Vec<Diagnostic>> {
-    let raw = |from: usize, to: usize| {
-        let mut text = line.text.get(from..to.min(line.text.len())).unwrap_or_default().to_vec();
-        text.resize(to - from, b' ');
-        text
-    };
-    let name = (raw(21, 22), raw(22, 26), raw(26, 27), raw(12, 16));
+    // As they stand, blanks and all: ` CA ` and `CA  ` are two names.
+    let mut columns = [b' '; 27];
+    let length = line.text.len().min(columns.len());
+    columns[..length].copy_from_slice(&line.text[..length]);
+    let name = AtomName::of([&columns[21..22], &columns[22..26], &columns[26..], &columns[12..16]]);
     let residue = line.columns(17, 21).text;
     // The fourth column of long names is one of padding in files that keep to three.
     let residue = if residue.len() == 4 { residue } else { line.columns(17, 20).text };

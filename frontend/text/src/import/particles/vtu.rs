@@ -86,6 +86,9 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             _ => {}
         }
     }
+    if positions.is_empty() {
+        return Err(fault_at(bytes.len(), "the file ends without points", "a tag Points with an array"));
+    }
     let mut cloud = Cloud::at(positions);
     cloud.values = values.into_iter().map(|(name, width, all)| (name, width.max(1), all.into())).collect();
     missing(options, &cloud)?;

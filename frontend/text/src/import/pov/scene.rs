@@ -124,14 +124,14 @@ fn tree(placed: &PlacedBlob, divisor: f64) -> Tree {
     let mut leaves: Vec<Tree> = components.iter().map(|component| leaf(component, divisor)).collect();
     let sum =
         if leaves.len() == 1 { leaves.remove(0) } else { Tree::at(*span, Combinator::from(Sum {}), leaves) };
-    mapped(&(placed.map * *map), colored(sum, color.or(placed.color)))
+    mapped(&(placed.map * *map), colored(sum, color.or(placed.color))).located(*span)
 }
 
 fn leaf(component: &Component, divisor: f64) -> Tree {
     let Component { skeleton, radius, strength, map, color, span } = component;
     let strength = strength / divisor;
     let leaf = Primitive { skeleton: skeleton.clone(), falloff: Falloff::Quartic, radius: *radius, strength };
-    colored(mapped(map, Tree::at(*span, leaf, Vec::new())), *color)
+    colored(mapped(map, Tree::at(*span, leaf, Vec::new())), *color).located(*span)
 }
 
 fn mapped(map: &DAffine3, tree: Tree) -> Tree {

@@ -141,7 +141,7 @@ impl BlobbyProgram<'_> {
                 _ => return self.plug_in(number, code, operands),
             };
             leaves += usize::from(code >= 1000);
-            results.push(part);
+            results.push(BlobbyPart { tree: part.tree.map(|tree| tree.located(self.span)), ..part });
         }
         let last = &results[results.len() - 1];
         Ok(BlobbyField { tree: last.tree(), far: last.far, bounds })

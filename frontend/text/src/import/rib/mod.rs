@@ -299,7 +299,7 @@ impl<'a> RibReader<'a> {
             [tree] => tree.clone(),
             several => Tree::at(span, Combinator::from(Union {}), several.to_vec()),
         };
-        self.trees.push(placed(colored(tree, self.now.color), &space));
+        self.trees.push(placed(colored(tree, self.now.color), &space).located(span));
         Ok(())
     }
 
@@ -346,7 +346,7 @@ impl<'a> RibReader<'a> {
         let field = program.field(&instructions, &colors)?;
         let space = self.space()?;
         let tree = self.bounded(span, field);
-        let tree = placed(colored(tree, common.or(self.now.color)), &space);
+        let tree = placed(colored(tree, common.or(self.now.color)), &space).located(span);
         match self.open.as_ref().and_then(|handle| self.objects.get_mut(handle)) {
             Some(object) => object.push(tree),
             None => self.trees.push(tree),

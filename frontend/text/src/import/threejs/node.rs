@@ -58,7 +58,7 @@ impl TreeReader<'_> {
         while let Some(task) = tasks.pop() {
             match task {
                 NodeTask::Enter(node) => match self.enter(node)? {
-                    Entered::Leaf(placed) => done.push(placed),
+                    Entered::Leaf(placed) => done.push(self.located(node, placed)),
                     Entered::Operator(operation) => {
                         let children = self.children(node)?;
                         tasks.push(NodeTask::Leave(node, operation, children.len()));
@@ -67,12 +67,18 @@ impl TreeReader<'_> {
                 },
                 NodeTask::Leave(node, operation, count) => {
                     let children = done.split_off(done.len() - count);
-                    done.push(self.apply(node, operation, children)?);
+                    let placed = self.apply(node, operation, children)?;
+                    done.push(self.located(node, placed));
                 }
             }
         }
         // The list ends with the root.
         done.pop().map(|root| root.tree).ok_or_else(|| self.error(root, "the file has no node"))
+    }
+
+    /// What the check says of it is said of the object in the file.
+    fn located(&self, node: JsonValue, placed: Placed) -> Placed {
+        Placed { tree: placed.tree.located(self.json.span(node)), ..placed }
     }
 
     fn children(&self, node: JsonValue) -> Result<Vec<JsonValue>, Diagnostic> {
