@@ -6,7 +6,7 @@ use std::path::Path;
 
 use jbt::diagnostic::escape;
 use jbt::tree::Bounds;
-use jbt::tree::NodeKind;
+use jbt::tree::{ConstantValues, LeafConstant, NodeKind};
 use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Parameter, Query, Task};
 use serde_json::{Map, Value, json};
 
@@ -149,6 +149,7 @@ impl Checked {
             "bounds": bounds,
             "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
+            "constants": constants(tree),
             "overlaps": self.parts.as_ref().map(PartFindings::json),
             "too_large_for": self.too_large.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         })
@@ -171,6 +172,11 @@ impl Checked {
         if !names.is_empty() {
             let _ = writeln!(out, "  names        {}", shortened(&names));
         }
+        for constant in tree.constants() {
+            let values: BTreeSet<String> = constant.values.iter().map(LeafConstant::to_string).collect();
+            let values: BTreeSet<&str> = values.iter().map(String::as_str).collect();
+            let _ = writeln!(out, "  constant     {}: {}", escape(&constant.name), shortened(&values));
+        }
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
         out.push_str(&self.parts.as_ref().map_or_else(String::new, PartFindings::text));
@@ -180,6 +186,16 @@ impl Checked {
         }
         out
     }
+}
+
+/// The values of the constants of leaves, by name.
+fn constants(tree: &CheckedTree) -> Map<String, Value> {
+    let value = |value: &LeafConstant| match value {
+        LeafConstant::Whole(number) => json!(number),
+        LeafConstant::Text(text) => json!(text),
+    };
+    let entry = |one: ConstantValues| (one.name, one.values.iter().map(value).collect());
+    tree.constants().into_iter().map(entry).collect()
 }
 
 /// The names of the nodes, each once.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
-use jbt::mesh::ThinReport;
+use jbt::mesh::{Mesh, Simplify, ThinReport};
 use jbt::{Box3, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized};
 use serde_json::json;
 
@@ -36,6 +36,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     scene.warn(quiet);
     let tree = scene.check()?;
     options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
+    options.constants = tree.constants_of_pieces();
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
@@ -44,6 +45,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let height = arguments.flat_bottom;
     if let Some(flat) = height.map(|height| flattened(&scene.model, &made, height)).transpose()?.flatten() {
         let tree = flat.check().map_err(|error| scene.failure(&error))?;
+        options.constants = tree.constants_of_pieces();
         let mut work = || progress.run(settings.mesh(&compiler, &tree));
         made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     }
@@ -52,13 +54,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
     }
     if let Some(until) = arguments.simplify {
-        let whole = std::mem::take(&mut made.mesh);
-        made.mesh = whole.simplified(until);
-        if made.mesh.triangles.is_empty() && !whole.triangles.is_empty() {
-            let message =
-                "--simplify leaves nothing of the mesh: expected less than the thickness of the model";
-            return Err(Failure::Usage(message.to_owned()));
-        }
+        made.mesh = simplified(&made.mesh, until)?;
     }
 
     // The file is written while the mesh is measured.
@@ -103,7 +99,17 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
         )));
     }
     let &MeshArguments { up, colors, unit, palette, .. } = arguments;
-    Ok(ExportOptions { up, colors, unit, palette, name: None })
+    Ok(ExportOptions { up, colors, unit, palette, ..ExportOptions::default() })
+}
+
+/// A mesh of fewer triangles, of which something is left.
+fn simplified(whole: &Mesh, until: Simplify) -> Result<Mesh, Failure> {
+    let mesh = whole.simplified(until);
+    if mesh.triangles.is_empty() && !whole.triangles.is_empty() {
+        let message = "--simplify leaves nothing of the mesh: expected less than the thickness of the model";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(mesh)
 }
 
 /// A model without what is lower than `height` above the lowest vertex of its mesh; `None` if there is none.

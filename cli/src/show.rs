@@ -15,6 +15,7 @@ use crate::scene::LoadedScene;
 
 /// The stages that are neither passes nor forms of engines.
 const TREE: &str = "tree";
+const RUST: &str = "rust";
 const IR: &str = "ir";
 
 /// The message where there is nothing to show.
@@ -32,6 +33,9 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     let tree = scene.check_for(&arguments.query)?;
     if stage == TREE {
         return print(text::print(&scene.model).trim_end());
+    }
+    if stage == RUST {
+        return print(text::print_rust(&scene.model).trim_end());
     }
     let fail = |error: &CompileError| scene.failure(error);
     let purpose = Purpose::Answers(query);
@@ -82,7 +86,11 @@ fn machine(function: &Verified, stage: &str, level: Level) -> Result<String, Fai
 
 /// All stages for a query, in order, and what each shows.
 fn stages(query: Query) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let first = [(TREE, "The scene as .jbt text."), (IR, "The lowered program, before any pass.")];
+    let first = [
+        (TREE, "The scene as .jbt text."),
+        (RUST, "The scene as a function in Rust that builds it."),
+        (IR, "The lowered program, before any pass."),
+    ];
     let last = forms().into_iter().map(|form| (form.name, form.what));
     first.into_iter().chain(passes(Purpose::Answers(query)).map(|pass| (pass.name, pass.what))).chain(last)
 }

@@ -142,20 +142,83 @@ fn claims_hold() {
     assert!(total >= 20, "only {total} claims were found");
 }
 
+/// The folders of packages.
+const PACKAGES: [(&str, &str); 8] = [
+    ("jbt", "runtime"),
+    ("jbt-cli", "cli"),
+    ("jbt-targets", "fuzz/targets"),
+    ("jbt-ir", "ir"),
+    ("jbt-jit", "jit"),
+    ("jbt-lower", "frontend/lower"),
+    ("jbt-model", "frontend/model"),
+    ("jbt-text", "frontend/text"),
+];
+
+/// The folder of a package.
+fn folder_of(package: &str) -> PathBuf {
+    let found = PACKAGES.iter().find(|(name, _)| *name == package);
+    root().join(found.unwrap_or_else(|| panic!("a package {package}")).1)
+}
+
+/// The texts of a file or of all files of Rust below a folder, one behind the other.
+fn sources(path: &Path) -> String {
+    let mut text = String::new();
+    let mut stack = vec![path.to_owned()];
+    while let Some(path) = stack.pop() {
+        if let Ok(entries) = fs::read_dir(&path) {
+            stack.extend(entries.map(|entry| entry.expect("an entry").path()));
+        } else if path.extension().is_some_and(|extension| extension == "rs") && path.exists() {
+            text.push_str(&fs::read_to_string(path).expect("text"));
+        }
+    }
+    text
+}
+
+/// Whether a source has a test of this name.
+fn has_test(source: &str, name: &str) -> bool {
+    let head = format!("fn {name}() {{");
+    let is_test = |(at, _): (usize, &str)| source[..at].trim_end().ends_with("#[test]");
+    source.match_indices(&head).any(is_test)
+}
+
+/// Each feature of the page has a test that is there.
+#[test]
+fn features_name_tests_that_are_there() {
+    let text = fs::read_to_string(root().join("docs/features.md")).expect("the page");
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    assert!(rows.len() >= 20, "{} features", rows.len());
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, feature, what, _, command, _] = cells[..] else { panic!("five bars: {row}") };
+        assert!(!feature.is_empty() && !what.is_empty(), "{row}");
+        let words: Vec<&str> = command.trim_matches('`').split_whitespace().collect();
+        let (folder, name) = match words[..] {
+            ["cargo", "test", "--release", "-p", package, "--test", test, name] => {
+                (folder_of(package).join("tests"), (Some(test), name))
+            }
+            ["cargo", "test", "--release", "-p", package, "--lib", name] => {
+                (folder_of(package).join("src"), (None, name))
+            }
+            _ => panic!("{row}"),
+        };
+        let (program, name) = name;
+        let source = match program {
+            None => sources(&folder),
+            Some(program) => [folder.join(format!("{program}.rs")), folder.join(program)]
+                .map(|path| sources(&path))
+                .concat(),
+        };
+        assert!(has_test(&source, name), "no test {name}: {row}");
+    }
+    assert!(has_test("#[test]\nfn a() {", "a") && !has_test("fn a() {", "a"));
+}
+
 /// Tests that the page of promises names are there.
 #[test]
 fn promises_name_tests_that_are_there() {
     let text = fs::read_to_string(root().join("docs/promises.md")).expect("the page");
     let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| R")).collect();
     assert!(rows.len() >= 20, "{} promises", rows.len());
-    let packages = [
-        ("jbt", "runtime"),
-        ("jbt-cli", "cli"),
-        ("jbt-targets", "fuzz/targets"),
-        ("jbt-ir", "ir"),
-        ("jbt-jit", "jit"),
-        ("jbt-text", "frontend/text"),
-    ];
     for row in rows {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
         let [_, _, promise, figure, command, date, machine, _] = cells[..] else {
@@ -167,9 +230,7 @@ fn promises_name_tests_that_are_there() {
             words.iter().position(|word| *word == flag).and_then(|at| words.get(at + 1)).copied()
         };
         if let (Some(package), Some(test)) = (after("-p"), after("--test")) {
-            let folder =
-                packages.iter().find(|(name, _)| *name == package).unwrap_or_else(|| panic!("{row}")).1;
-            let path = root().join(folder).join("tests");
+            let path = folder_of(package).join("tests");
             let is_there =
                 path.join(format!("{test}.rs")).exists() || path.join(test).join("main.rs").exists();
             assert!(is_there, "{package} has no test {test}: {row}");

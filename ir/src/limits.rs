@@ -51,6 +51,8 @@ pub const MAX_POINT_WORK: usize = 1 << 17;
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
 pub const MAX_ATTRIBUTES: usize = 32;
+/// Names of constants in one model: the leaves below a node are searched once for each.
+pub const MAX_CONSTANTS: usize = 64;
 /// Points of one skeleton, and numbers of one list.
 pub const MAX_SKELETON_POINTS: usize = 1 << 16;
 /// Planes of one convex solid that is given by them: its corners are found by cutting all faces by each.

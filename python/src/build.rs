@@ -7,6 +7,7 @@ use jbt_model::model::Model;
 use jbt_model::written::{Radius, Written, WrittenAttribute, WrittenTextured, WrittenUv};
 use pyo3::prelude::*;
 
+use crate::constant::constant_of;
 use crate::error::refused;
 use crate::falloff::{PyFalloff, PyPattern, named, values};
 use crate::fields::{numbers, vector};
@@ -115,6 +116,12 @@ impl PyModel {
         let declared = self.declared(name, numbers.len());
         let written = Written::Attribute { name: name.into(), value: WrittenAttribute::Numbers(numbers) };
         Ok(declared.with_tree(Tree::new(written, vec![self.tree().clone()])))
+    }
+
+    /// A constant of all leaves below: text or a whole number.
+    fn constant(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let value = constant_of(name, given)?;
+        Ok(self.with_tree(self.tree().constant(name, value)))
     }
 
     /// Attributes by a pattern of two values.

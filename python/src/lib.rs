@@ -13,6 +13,7 @@
 mod build;
 mod cloud;
 mod columns;
+mod constant;
 mod contour;
 mod error;
 mod evaluator;

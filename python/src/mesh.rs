@@ -11,6 +11,7 @@ use numpy::{IntoPyArray as _, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::constant::{constants_dict, constants_of};
 use crate::error::refused;
 use crate::model::{PyModel, engine_of, orientation_of};
 use crate::work::CallEffort;
@@ -77,7 +78,9 @@ impl PyModel {
         };
         let compiled = self.compiled(py, engine_of(engine)?)?;
         let effort = CallEffort { py, threads, progress };
-        told(py, effort.run(move |watch| watch.run(settings.with(&compiled)))?)
+        let dict = told(py, effort.run(move |watch| watch.run(settings.with(&compiled)))?)?;
+        dict.set_item("constants", constants_dict(py, self.checked(py)?.constants())?)?;
+        Ok(dict)
     }
 }
 
@@ -192,6 +195,7 @@ pub(crate) fn save_mesh(
     format: Option<&str>,
     up: Option<&str>,
     colors: Option<&str>,
+    constants: Vec<(String, Vec<Bound<'_, PyAny>>)>,
 ) -> PyResult<()> {
     let attributes = attributes.into_iter().map(|(name, values)| {
         let values = values.as_array();
@@ -219,6 +223,7 @@ pub(crate) fn save_mesh(
         colors: colors
             .map(|given| ColorEncoding::from_str(given).map_err(|e| word("colors", given, e.to_string())))
             .transpose()?,
+        constants: vec![constants_of(constants)?],
         ..ExportOptions::default()
     };
     CallEffort::quiet(py).run(move |_| match format {

@@ -1,12 +1,15 @@
 //! The set that a model encloses: how far it reaches, how large it is, who decides where.
 
+use jbt::diagnostic::Span;
 use jbt::solid::{Measure, Solid};
+use jbt::tree::LeafConstant;
 use jbt::{Box3, Query};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
+use crate::constant::object;
 use crate::error::{Refusal, refused};
 use crate::evaluator::PyEvaluator;
 use crate::mesh::{fineness, region};
@@ -84,26 +87,22 @@ impl PyModel {
         let found = effort.run(move |watch| -> Result<_, Refusal> {
             let each = |point: &[f64; 3]| {
                 let found = (!watch.is_stopped()).then(|| jbt_model::owner::owner(&tree, *point)).flatten();
-                found.map(|owner| (owner.node.0, owner.share, owner.path(&tree), owner.span))
+                found.map(|owner| {
+                    let constants = owner.constants(&tree).into_iter();
+                    let constants = constants.map(|(name, value)| (name.to_owned(), value.clone())).collect();
+                    let path = owner.path(&tree);
+                    FoundOwner { node: owner.node.0, share: owner.share, path, span: owner.span, constants }
+                })
             };
             Ok(points.par_iter().map(each).collect::<Vec<_>>())
         })?;
-        let leaf = found.iter().map(|one| one.as_ref().map_or(-1, |one| i64::from(one.0))).collect();
-        let share = found.iter().map(|one| one.as_ref().map_or(0.0, |one| one.1)).collect();
-        let line = |span: Option<jbt::diagnostic::Span>| {
+        let line = |span: Option<Span>| {
             source
                 .as_ref()
                 .zip(span)
                 .map_or(0, |(source, span)| source.source().position(span.start as usize).0)
         };
-        let lines = found.iter().map(|one| one.as_ref().map_or(0, |one| line(one.3) as i64)).collect();
-        let dict = PyDict::new(py);
-        dict.set_item("leaf", PyArray1::<i64>::from_vec(py, leaf))?;
-        dict.set_item("share", PyArray1::<f64>::from_vec(py, share))?;
-        dict.set_item("line", PyArray1::<i64>::from_vec(py, lines))?;
-        let paths: Vec<Option<String>> = found.into_iter().map(|one| one.map(|one| one.2)).collect();
-        dict.set_item("path", paths)?;
-        Ok(dict)
+        owners_dict(py, found, line)
     }
 
     /// What answers the field in the numbers that decide sides: as [`compile`](Self::compile) of the field.
@@ -112,4 +111,42 @@ impl PyModel {
         let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(Query::FIELD))?;
         Ok(PyEvaluator::new(made, self.checked(py)?))
     }
+}
+
+/// The leaf that decides at a point.
+struct FoundOwner {
+    node: u32,
+    share: f64,
+    path: String,
+    span: Option<Span>,
+    constants: Vec<(String, LeafConstant)>,
+}
+
+/// A dictionary of who decides at points. `line` is that of a place.
+fn owners_dict(
+    py: Python<'_>,
+    found: Vec<Option<FoundOwner>>,
+    line: impl Fn(Option<Span>) -> usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let leaf = found.iter().map(|one| one.as_ref().map_or(-1, |one| i64::from(one.node))).collect();
+    let share = found.iter().map(|one| one.as_ref().map_or(0.0, |one| one.share)).collect();
+    let lines = found.iter().map(|one| one.as_ref().map_or(0, |one| line(one.span) as i64)).collect();
+    let dict = PyDict::new(py);
+    dict.set_item("leaf", PyArray1::<i64>::from_vec(py, leaf))?;
+    dict.set_item("share", PyArray1::<f64>::from_vec(py, share))?;
+    dict.set_item("line", PyArray1::<i64>::from_vec(py, lines))?;
+    let mut paths = Vec::new();
+    let mut constants = Vec::new();
+    for one in found {
+        let (path, of_leaf) = one.map(|one| (one.path, one.constants)).unzip();
+        paths.push(path);
+        let told = PyDict::new(py);
+        for (name, value) in of_leaf.into_iter().flatten() {
+            told.set_item(name, object(py, value)?)?;
+        }
+        constants.push(told);
+    }
+    dict.set_item::<_, Vec<Option<String>>>("path", paths)?;
+    dict.set_item("constants", constants)?;
+    Ok(dict)
 }

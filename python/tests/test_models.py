@@ -194,3 +194,17 @@ def test_repr() -> None:
     ball = jbt.point(radius=1)
     assert repr(ball) == "<jbt.Model of 1 node, 1 leaves>"
     assert repr(jbt.point(radius=-1)) == "<jbt.Model with errors>"
+
+
+def test_constants_are_answered_by_owners_and_written(tmp_path: Path) -> None:
+    pin = jbt.point((3, 0, 0), radius=1).constant("material", "brass").constant("part", 17)
+    model = (jbt.point(radius=1) | pin).constant("material", "steel")
+    owners = model.owner([[0.1, 0, 0], [3.1, 0, 0], [9, 0, 0]])
+    assert owners.constants == [{"material": "steel"}, {"material": "brass", "part": 17}, {}]
+    assert 'constant material "brass"' in str(model)
+    mesh = model.mesh(resolution=16)
+    assert mesh.constants == {"material": ["steel", "brass"], "part": [17]}
+    mesh.save(tmp_path / "pin.obj")
+    assert "# material steel, brass\n# part 17\n" in (tmp_path / "pin.obj").read_text()
+    with pytest.raises(Exception, match="expected text or a whole number"):
+        model.constant("part", 1.5)  # type: ignore[arg-type]

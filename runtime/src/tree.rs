@@ -38,8 +38,9 @@
 
 pub use jbt_model::attribute::{AttributeValue, Textured, UvMap};
 pub use jbt_model::bounds::Bounds;
-pub use jbt_model::check::{CheckedNode, FoundNode, OWNER};
+pub use jbt_model::check::{CheckedNode, DEFINED, FoundNode, OWNER};
 pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax, operators};
+pub use jbt_model::constant::{ConstantValues, LARGEST_CONSTANT, LeafConstant};
 pub use jbt_model::expression::Expression;
 pub use jbt_model::falloff::{Falloff, FalloffKind};
 pub use jbt_model::field::{Field, FieldKind, FieldValue};
@@ -49,6 +50,7 @@ pub use jbt_model::member::{Lengths, Matrix, Member, Positions};
 pub use jbt_model::particles::{NumberArray, ParticleValues, Particles, PerParticle};
 pub use jbt_model::skeleton::{Skeleton, SkeletonKind};
 pub use jbt_model::texture::{Texture, TextureKind};
+pub use jbt_model::tour::{Tour, TourEvent, TourStep};
 pub use jbt_model::traverse::Visit;
 pub use jbt_model::tree::{Node, Tree};
 pub use jbt_model::warp::{Warp, WarpKind};

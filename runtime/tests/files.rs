@@ -12,6 +12,7 @@ fn row(conventions: &Conventions) -> String {
         uv,
         attributes,
         name,
+        constants,
         far,
         unit,
         splits: _,
@@ -23,8 +24,9 @@ fn row(conventions: &Conventions) -> String {
     };
     let (uv, attributes) = (uv.unwrap_or("none"), attributes.unwrap_or("none"));
     format!(
-        "| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} | {} | {} | {} |",
+        "| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} | {} | {} | {} | {} |",
         name.unwrap_or("none"),
+        constants.unwrap_or("none"),
         far.name(),
         unit.map_or("none", LengthUnit::name)
     )

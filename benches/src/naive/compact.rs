@@ -169,7 +169,10 @@ impl Compact {
                 // that it is off.
                 let here: &[f64] = match value {
                     AttributeValue::Numbers(numbers) => numbers,
-                    AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => &[],
+                    AttributeValue::Textured(_)
+                    | AttributeValue::Uv(_)
+                    | AttributeValue::Expressed(_)
+                    | AttributeValue::Constant(_) => &[],
                 };
                 let mut values = values.to_vec();
                 let mut start = 0;

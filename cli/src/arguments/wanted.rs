@@ -3,7 +3,7 @@
 use std::fmt;
 
 use clap::builder::{PossibleValue, TypedValueParser};
-use jbt::tree::OWNER;
+use jbt::tree::{DEFINED, OWNER};
 use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
 /// Answers, and the groups of attributes among them if not all are wanted.
@@ -44,7 +44,14 @@ impl WantedAnswers {
         let Some(groups) = &self.groups else { return Ok(tree) };
         let has_own = tree.attributes().iter().any(|group| &*group.name == OWNER);
         let asks_owner = groups.iter().any(|name| name == OWNER);
-        if asks_owner && !has_own { tree.with_owners()? } else { tree }.of_attributes(groups)
+        let mut tree = if asks_owner && !has_own { tree.with_owners()? } else { tree };
+        let mut asked: Vec<&str> = groups.iter().filter_map(|name| name.strip_suffix(DEFINED)).collect();
+        asked.sort_unstable();
+        asked.dedup();
+        for name in asked {
+            tree = tree.with_coverage(name)?;
+        }
+        tree.of_attributes(groups)
     }
 }
 

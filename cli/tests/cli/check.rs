@@ -114,3 +114,43 @@ fn two_scenes_are_compared() {
     assert_eq!((&report["same"], &report["differences"][0]["path"]), (&json!(false), &json!("union.0/hub")));
     folder.jbt(&["diff", "a.jbt", "none.jbt"]).code(4);
 }
+
+#[test]
+fn constants_are_told_compared_and_written() {
+    let text = |material: &str| {
+        format!(
+            "jbt 1 part \"hub\" {{ constant material \"{material}\" {{ point {{ radius 1 }} }} }}\n\
+            part \"rim\" {{ constant part 17 {{ torus {{ ring_radius 2 tube_radius 0.3 radius 0.4 }} }} }}"
+        )
+    };
+    let folder = Folder::new().with("a.jbt", text("steel")).with("b.jbt", text("oak"));
+    let told = folder.jbt(&["check", "a.jbt"]).code(0).stdout();
+    assert!(
+        told.contains("constant     material: \"steel\"") && told.contains("constant     part: 17"),
+        "{told}"
+    );
+    let json = folder.jbt(&["check", "a.jbt", "--json"]).code(0).json();
+    let constants = json["files"][0]["model"]["constants"].to_string();
+    assert_eq!(constants, r#"{"material":["steel"],"part":[17]}"#);
+    let told = folder.jbt(&["diff", "a.jbt", "b.jbt"]).code(0).stdout();
+    assert!(
+        told.contains("constant material \"steel\"") && told.contains("constant material \"oak\""),
+        "{told}"
+    );
+    folder.jbt(&["mesh", "a.jbt", "-o", "a.obj", "--resolution", "16"]).code(0);
+    let obj = std::fs::read_to_string(folder.path("a.obj")).unwrap();
+    assert!(obj.contains("o hub\n# material steel\n") && obj.contains("o rim\n# part 17\n"));
+}
+
+#[test]
+fn a_default_is_told_from_a_value() {
+    let text = "jbt 1 union { color (1 1 1) { point { radius 1 } } point { at (3 0 0) radius 1 } }";
+    let folder = Folder::new().with("a.jbt", text).with("points.csv", "x,y,z\n0,0,0\n3,0,0\n9,0,0\n");
+    let eval = |query: &str| {
+        folder.jbt(&["eval", "a.jbt", "--points", "points.csv", "--query", query, "-o", "-"]).code(0).stdout()
+    };
+    let expected = "x,y,z,field,color.defined\n0,0,0,1,1\n3,0,0,1,0\n9,0,0,0,0";
+    assert_eq!(eval("field,color.defined").trim_end(), expected);
+    let arguments = ["eval", "a.jbt", "--points", "points.csv", "--query", "rough.defined", "-o", "-"];
+    folder.jbt(&arguments).code(2).says("no attribute is named `rough`");
+}

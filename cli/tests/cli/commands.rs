@@ -347,6 +347,8 @@ fn show_prints_every_stage() {
     let tree = folder.jbt(&["show", "scene.blob", "--stage", "tree"]).code(0).stdout();
     let again = Folder::new().with("tree.jbt", &tree);
     assert_eq!(again.jbt(&["show", "tree.jbt", "--stage", "tree"]).code(0).stdout(), tree);
+    let rust = folder.jbt(&["show", "scene.jbt", "--stage", "rust"]).code(0).stdout();
+    assert!(rust.contains("pub fn model() -> jbt::Model {") && rust.contains("let arm = segment("), "{rust}");
     let stages = ["ir", "gradient", "legalize", "constant-folding", "simplify", "cse", "dce", "schedule"];
     for stage in stages {
         let text = folder.jbt(&["show", "scene.jbt", "--stage", stage]).code(0).stdout();

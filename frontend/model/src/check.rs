@@ -40,6 +40,8 @@ use crate::tree::Node;
 
 mod arena;
 mod chosen;
+mod constants;
+mod coverage;
 mod dependence;
 mod edit;
 mod fields;
@@ -58,6 +60,8 @@ mod work;
 
 pub use arena::{CheckedNode, Children, NodeId};
 use arena::{Paths, check_instances};
+use constants::check_names_of_constants;
+pub use coverage::DEFINED;
 use dependence::Dependence;
 pub use edit::CheckedModel;
 pub use find::FoundNode;
@@ -109,6 +113,7 @@ impl Model {
         if report.is_empty() {
             check_instances(&mut report, &nodes, max_instances);
         }
+        check_names_of_constants(&mut report, &nodes);
         if report.is_empty() {
             check_work(&mut report, &nodes, iso);
         }

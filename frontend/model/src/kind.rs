@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::attribute::AttributeValue;
 use crate::combine::Combinator;
+use crate::constant::LeafConstant;
 use crate::expression::Expression;
 use crate::falloff::Falloff;
 use crate::particles::Particles;
@@ -47,7 +48,7 @@ pub enum NodeKind {
     Warp(Warp),
     /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
     Attribute {
-        /// The attribute group.
+        /// The attribute group, or the name of the constant.
         name: Arc<str>,
         /// What they have.
         value: AttributeValue,
@@ -76,6 +77,22 @@ impl NodeKind {
     pub(crate) const fn origin() -> &'static Skeleton {
         static ORIGIN: Skeleton = Skeleton::Point(Point { at: DVec3::ZERO });
         &ORIGIN
+    }
+
+    /// The constant that it gives to the leaves below, and its name.
+    #[must_use]
+    pub fn constant(&self) -> Option<(&str, &LeafConstant)> {
+        match self {
+            Self::Attribute { name, value: AttributeValue::Constant(value) } => Some((name, value)),
+            Self::Primitive(_)
+            | Self::Particles(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Affine(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => None,
+        }
     }
 
     /// The rows of an affine map, the last column of which is the shift; `None` for any other node.

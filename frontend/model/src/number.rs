@@ -131,6 +131,13 @@ impl Number {
         Self::with_formula(value, NumberFormula::new(steps, None))
     }
 
+    /// The value of any function; `operands` are as many as its [`arity`](Function::arity) allows.
+    #[must_use]
+    pub fn of_function(function: Function, operands: impl IntoIterator<Item = Self>) -> Self {
+        let operands: Vec<Self> = operands.into_iter().collect();
+        Self::of_step(Step::Call(function, operands.len() as u32), &operands.iter().collect::<Vec<_>>())
+    }
+
     fn call(&self, function: Function) -> Self {
         self.unary(Step::Call(function, 1), function.apply(&[self.value]))
     }

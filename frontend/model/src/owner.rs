@@ -10,6 +10,7 @@
 //! equals the first in the file owns the point. The walk is in f64 over plain formulas, one point at a time,
 //! on a list of its own: a chain of a million nodes is a tree like any other.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use glam::DVec3;
@@ -17,6 +18,7 @@ use glam::DVec3;
 use crate::attribute::AttributeValue;
 use crate::check::{CheckedNode, CheckedTree, NodeId};
 use crate::combine::{Combinator, Sum};
+use crate::constant::LeafConstant;
 use crate::descent::{Question, ask};
 use crate::diagnostic::Span;
 use crate::expression::Expression;
@@ -59,6 +61,24 @@ impl Owner {
             | NodeKind::Warp(_)
             | NodeKind::Attribute { .. } => path + word(node),
         }
+    }
+
+    /// The constants that the leaf has, by name: of several of one name above it the nearest one.
+    ///
+    /// ```
+    /// use jbt_model::builder::point;
+    /// use jbt_model::{model::Model, owner::owner};
+    /// let pin = point([3, 0, 0], 1).constant("material", "brass").constant("part", 17);
+    /// let tree = Model::new((point([0; 3], 1) | pin).constant("material", "steel")).check()?;
+    /// let [plate, pin] = [0.1, 3.1].map(|x| owner(&tree, [x, 0.0, 0.0]).unwrap());
+    /// assert_eq!(plate.constants(&tree)["material"], &"steel".into());
+    /// assert_eq!((pin.constants(&tree)["material"], pin.constants(&tree)["part"]), (&"brass".into(), &17.into()));
+    /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
+    /// ```
+    #[must_use]
+    pub fn constants<'a>(&self, tree: &'a CheckedTree) -> BTreeMap<&'a str, &'a LeafConstant> {
+        // The root comes first, so nearer ones replace it.
+        self.above.iter().filter_map(|&(node, _)| tree.node(node).kind.constant()).collect()
     }
 
     /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or of

@@ -9,6 +9,9 @@ pub const COORDINATES: [&str; 3] = ["x", "y", "z"];
 /// The word for the field of a subtree.
 pub const FIELD: &str = "field";
 
+/// The word for a constant of leaves.
+pub const CONSTANT: &str = "constant";
+
 /// The words that begin a statement.
 const STATEMENTS: [&str; 7] = ["jbt", "iso", "origin", "orientation", "param", "attribute", "let"];
 

@@ -50,6 +50,13 @@ pub enum Radius {
     Surface(Number),
 }
 
+impl<T: Into<Number>> From<T> for Radius {
+    /// The radius of support.
+    fn from(radius: T) -> Self {
+        Self::Support(radius.into())
+    }
+}
+
 /// What tells maps apart that depend on parameters: the kind of an affine map, none for the move to the box
 /// of a formula, and the steps of the numbers that it is made of.
 pub type MapKey = (Option<MapKind>, Vec<Step>);

@@ -75,6 +75,7 @@
 //!            | WARP { FIELD value } [ "weighted" ]           weighted: two nodes in the block, the second gives the weight
 //!            | "warp" "(" { NAME "=" expression "," } expression "," expression "," expression ")" [ box ] [ "weighted" ]
 //!                                                            where the node is asked, for each point
+//!            | "constant" NAME ( QUOTED | expression )        what leaves are of: text, or a whole number
 //!            | [ "with" ] NAME given ;                       a declared attribute; "with" if its name is a word of the format
 //! given      = values                                        the same everywhere
 //!            | TEXTURE "{" { "a" values | "b" values | FIELD value } "}"     a pattern in the node's space: a where it is 0, b where it is 1
@@ -139,6 +140,7 @@ mod attribute;
 mod block;
 mod color;
 mod compare;
+mod constant;
 mod expression;
 mod falloff;
 pub mod files;
@@ -159,6 +161,7 @@ mod particles;
 mod primitive;
 mod print;
 mod program;
+mod rust;
 mod scope;
 mod stack;
 mod state;
@@ -177,6 +180,7 @@ use jbt_model::word::normalized;
 pub use compare::{MAX_DIFFERENCES, ModelDifference, compare};
 pub use hash::{HASH_VERSION, ModelHash, hash};
 pub use print::print;
+pub use rust::print_rust;
 pub use state::Options;
 use texts::Texts;
 pub use words::COMMON_FIELDS;

@@ -17,7 +17,7 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::tree::Tree;
 use jbt_model::warp::WarpKind;
-use jbt_model::word::is_statement;
+use jbt_model::word::{CONSTANT, is_statement};
 use jbt_model::written::Written;
 
 impl<'a> Parser<'a> {
@@ -26,14 +26,14 @@ impl<'a> Parser<'a> {
         fixed_words().any(|fixed| fixed == word)
             || self.group(word).is_some()
             || self.program.defines(word)
-            || ["for", "if", "include", EMPTY].contains(&word)
+            || ["for", "if", "include", EMPTY, CONSTANT].contains(&word)
     }
 
     /// All words that begin a node of this file.
     fn node_words(&self) -> impl Iterator<Item = &str> {
         let fixed = fixed_words().map(|word| -> &str { word });
         let own = self.attributes.iter().map(|group| &*group.name);
-        fixed.chain([EMPTY]).chain(own).chain(self.program.definition_names())
+        fixed.chain([EMPTY, CONSTANT]).chain(own).chain(self.program.definition_names())
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -180,6 +180,7 @@ impl<'a> Parser<'a> {
             _ if self.is_loop(word) => self.for_node(start),
             _ if self.is_condition(word) => self.if_node(start),
             _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
+            CONSTANT => self.constant(start),
             EMPTY => {
                 self.count_node(start.span());
                 Begun::Leaf(self.make(start.span(), Written::Expression(Formula::zero()), Vec::new()))

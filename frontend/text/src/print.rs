@@ -23,13 +23,17 @@ use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
 use jbt_model::parameter::{Parameter, ParameterRange};
-use jbt_model::particles::{NumberArray, ParticleValues, PerParticle};
+use jbt_model::particles::{ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
-use jbt_model::word::{is_identifier, is_statement};
+use jbt_model::word::{CONSTANT, is_identifier, is_statement};
 use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
     WrittenTextured, WrittenUv,
 };
+
+mod list;
+
+use list::list;
 
 /// Operators below this depth are printed on one line.
 const DEEPEST: usize = 12;
@@ -384,9 +388,9 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
 }
 
 fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    if is_reserved(name) {
-        let _ = write!(out, "{GROUP_NODE} ");
-    }
+    let is_constant = matches!(value, WrittenAttribute::Constant(_));
+    let before = if is_constant { Some(CONSTANT) } else { is_reserved(name).then_some(GROUP_NODE) };
+    let _ = before.map_or(Ok(()), |word| write!(out, "{word} "));
     out.push_str(name);
     match value {
         WrittenAttribute::Numbers(numbers) => {
@@ -404,6 +408,9 @@ fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions
             out.push_str(" }");
         }
         WrittenAttribute::Uv(map) => uv(out, map),
+        WrittenAttribute::Constant(value) => {
+            let _ = write!(out, " {value}");
+        }
         WrittenAttribute::Expressed(formula) => {
             out.push(' ');
             expression(out, formula, |place| format!("n{place}"), definitions);
@@ -471,26 +478,4 @@ fn per_particle(out: &mut String, word: &str, numbers: &PerParticle<Number>) {
         PerParticle::All(number) => write!(out, " {word} {number}"),
         PerParticle::Each(numbers) => write!(out, " {word} ").map(|()| list(out, numbers, 1)),
     };
-}
-
-/// A list of numbers, or of vectors of so many numbers. A long one is broken into lines.
-fn list(out: &mut String, numbers: &NumberArray, width: usize) {
-    const NUMBERS_OF_A_LINE: usize = 12;
-    let in_a_line = (NUMBERS_OF_A_LINE / width).max(1);
-    out.push('(');
-    for first in (0..numbers.len()).step_by(width) {
-        if first > 0 {
-            out.push(if (first / width).is_multiple_of(in_a_line) { '\n' } else { ' ' });
-        }
-        if width == 1 {
-            out.push_str(&numbers.at(first).text());
-            continue;
-        }
-        for index in first..numbers.len().min(first + width) {
-            out.push(if index == first { '(' } else { ' ' });
-            out.push_str(&numbers.at(index).text());
-        }
-        out.push(')');
-    }
-    out.push(')');
 }

@@ -81,12 +81,14 @@ class Owners:
         share: its part of the weight, up to 1; less than 1 where fields blend.
         path: the way to it from the root, as "union.0/color.0/point"; None for nobody.
         line: the line of its text, from 1; 0 if the model came from none.
+        constants: the constants that it has, by name; empty for nobody.
     """
 
     leaf: NDArray[np.int64]
     share: Doubles
     path: list[str | None]
     line: NDArray[np.int64]
+    constants: list[dict[str, str | int]]
 
     def __len__(self) -> int:
         return len(self.leaf)

@@ -47,6 +47,7 @@ class Mesh:
         closed: whether every edge has two triangles.
         cut_sides: the sides of the region that cut the surface: "none", or as "-x +z".
         spacing: the edge of a cell.
+        constants: what the leaves of the model are of: the values of each constant, by its name.
         info: what it took: evaluations, the engine, places with parts thinner than a cell, and so on.
     """
 
@@ -61,6 +62,7 @@ class Mesh:
     closed: bool = True
     cut_sides: str = "none"
     spacing: float = 0.0
+    constants: dict[str, list[str | int]] = field(default_factory=dict)
     info: dict[str, Any] = field(default_factory=dict)
 
     def split(self) -> Mesh:
@@ -229,6 +231,7 @@ class Mesh:
             format,
             up,
             colors,
+            list(self.constants.items()),
         )
 
     def __repr__(self) -> str:
@@ -249,4 +252,5 @@ def of_native(made: dict[str, Any]) -> Mesh:
     facts = {name: made.pop(name) for name in ("up", "handed", "closed", "cut_sides", "spacing")}
     x, y, z = made.pop("origin")
     creases = Creases(**made.pop("creases"))
-    return Mesh(**arrays, creases=creases, origin=(x, y, z), **facts, info=made)
+    constants = made.pop("constants", {})
+    return Mesh(**arrays, creases=creases, origin=(x, y, z), **facts, constants=constants, info=made)

@@ -204,6 +204,17 @@ class Model(ModelMembers):
         """
         return Model(self._native.attribute(name, values))
 
+    def constant(self, name: str, value: str | int) -> Model:
+        """A constant for every leaf below that has no nearer one of this name: text or a whole number, as a
+        material or the number of a part. It costs nothing: `owner` answers it.
+
+        >>> import jbt
+        >>> pin = jbt.point(radius=1).constant("material", "brass").constant("part", 17)
+        >>> pin.owner([[0, 0, 0.1]]).constants
+        [{'material': 'brass', 'part': 17}]
+        """
+        return Model(self._native.constant(name, value))
+
     def textured(self, name: str, pattern: _jbt.Pattern, a: Reals, b: Reals) -> Model:
         """An attribute by a pattern: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the
         space of this model: maps of the whole move it, maps below do not."""

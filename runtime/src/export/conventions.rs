@@ -6,6 +6,7 @@ use std::num::NonZeroU16;
 use std::ops::Sub;
 use std::str::FromStr;
 
+use jbt_model::constant::ConstantValues;
 use jbt_model::orientation::ModelUp;
 
 use crate::srgb;
@@ -31,6 +32,8 @@ pub struct Conventions {
     pub attributes: Option<&'static str>,
     /// How it has the name of a mesh, if it has.
     pub name: Option<&'static str>,
+    /// How it has the constants of the leaves of a mesh, if it has.
+    pub constants: Option<&'static str>,
     /// How it has the place of a mesh that is far from the origin of the world.
     pub far: FarMeshes,
     /// Whether a vertex on an edge of the surface is there once for each side, because a vertex has one
@@ -210,9 +213,16 @@ pub(super) struct FileChoices<'a> {
     pub palette: Option<NonZeroU16>,
     /// What the mesh is called, where the format has a place for it.
     pub name: Option<&'a str>,
+    /// The constants of the leaves of each piece of the mesh.
+    pub constants: &'a [Vec<ConstantValues>],
 }
 
-impl FileChoices<'_> {
+impl<'a> FileChoices<'a> {
+    /// The constants of the leaves of a piece, by its place.
+    pub fn constants_of(self, piece: usize) -> &'a [ConstantValues] {
+        self.constants.get(piece).map_or(&[], Vec::as_slice)
+    }
+
     /// Where a point of the model, or a direction, is in the file.
     pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match (self.model, self.up) {

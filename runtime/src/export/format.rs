@@ -6,6 +6,8 @@ use std::num::NonZeroU16;
 use std::path::Path;
 use std::str::FromStr;
 
+use jbt_model::constant::ConstantValues;
+
 use super::conventions::{ColorEncoding, Conventions, FileChoices, LengthUnit, Up};
 use super::parts::WriteError;
 use super::{glb, obj, ply, stl, three_mf, usda};
@@ -95,6 +97,9 @@ pub struct ExportOptions {
     pub palette: Option<NonZeroU16>,
     /// What the mesh is called, in a format that has a place for it: see [`Conventions::name`].
     pub name: Option<String>,
+    /// The constants of the leaves of each piece of the mesh, in a format that has a place for them:
+    /// [`CheckedTree::constants_of_pieces`](crate::CheckedTree::constants_of_pieces) has those of a model.
+    pub constants: Vec<Vec<ConstantValues>>,
 }
 
 impl ExportOptions {
@@ -126,6 +131,7 @@ impl<'a> FileChoices<'a> {
             unit: options.unit_in(format).unwrap_or(LengthUnit::Metre),
             palette: options.palette,
             name: options.name.as_deref(),
+            constants: &options.constants,
         }
     }
 }

@@ -20,6 +20,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
 use std::ops::Range;
 
+use jbt_model::constant::{ConstantValues, LeafConstant};
 use jbt_model::orientation::ModelUp;
 use serde_json::{Map, Value, json};
 
@@ -52,6 +53,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
     name: Some("node and mesh"),
+    constants: Some("`extras` of the node"),
     far: FarMeshes::Node,
     splits: true,
     materials: false,
@@ -209,7 +211,8 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
     }
     let indices = layout.plane(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
     let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
-    for piece in mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()) {
+    let pieces = mesh.pieces().into_iter().enumerate();
+    for (place, piece) in pieces.filter(|(_, piece)| !piece.triangles.is_empty()) {
         let mut vertex = Map::new();
         for (name, plane) in &planes {
             let accessor = layout.accessor(*plane, piece.vertices.clone());
@@ -229,10 +232,7 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
         }
         let (mut node, mut shape) = (node(mesh, choices), json!({ "primitives": [primitive] }));
         node["mesh"] = json!(meshes.len());
-        if let Some(name) = piece.name.or(choices.name) {
-            node["name"] = json!(name);
-            shape["name"] = json!(name);
-        }
+        say(&mut node, &mut shape, piece.name.or(choices.name), choices.constants_of(place));
         nodes.push(node);
         meshes.push(shape);
     }
@@ -252,6 +252,33 @@ fn describe(mesh: &Mesh, choices: FileChoices<'_>, attributes: &[NamedAttribute<
         } }]);
     }
     (json, layout.bytes)
+}
+
+/// Says what a piece is called, and what its leaves are of.
+fn say(node: &mut Value, shape: &mut Value, name: Option<&str>, constants: &[ConstantValues]) {
+    if let Some(name) = name {
+        node["name"] = json!(name);
+        shape["name"] = json!(name);
+    }
+    if let Some(extras) = extras(constants) {
+        node["extras"] = extras;
+    }
+}
+
+/// The constants of a piece: a value, or a list where leaves differ.
+fn extras(constants: &[ConstantValues]) -> Option<Value> {
+    let value = |value: &LeafConstant| match value {
+        LeafConstant::Whole(number) => json!(number),
+        LeafConstant::Text(text) => json!(text),
+    };
+    let entry = |ConstantValues { name, values }: &ConstantValues| {
+        let told = match &values[..] {
+            [one] => value(one),
+            several => several.iter().map(value).collect(),
+        };
+        (name.clone(), told)
+    };
+    (!constants.is_empty()).then(|| Value::Object(constants.iter().map(entry).collect()))
 }
 
 /// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node

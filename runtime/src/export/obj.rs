@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Sub;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{WriteError, colors, finite, uvs, write_items};
+use super::parts::{WriteError, colors, finite, told, uvs, write_items};
 use crate::mesh::Mesh;
 
 /// What is usual in these files.
@@ -20,6 +20,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`vt`"),
     attributes: None,
     name: Some("`o`"),
+    constants: Some("`#` behind `o`"),
     far: FarMeshes::Digits,
     splits: false,
     materials: false,
@@ -59,9 +60,12 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
             writeln!(bytes, "vt {} {}", finite(uvs[2 * vertex]), finite(uvs[2 * vertex + 1]))
         })?;
     }
-    for piece in mesh.pieces() {
+    for (place, piece) in mesh.pieces().into_iter().enumerate() {
         if let Some(name) = piece.name {
             writeln!(out, "{}", object(name))?;
+        }
+        for constant in choices.constants_of(place) {
+            writeln!(out, "# {} {}", constant.name, told(constant))?;
         }
         let first = piece.triangles.start;
         write_items(out, piece.triangles.len(), |triangle, bytes| {

@@ -5,6 +5,8 @@ use std::io::{self, Write};
 
 use thiserror::Error;
 
+use jbt_model::constant::{ConstantValues, LeafConstant};
+
 use crate::parallel::*;
 
 use crate::mesh::{Attribute, Mesh};
@@ -123,4 +125,14 @@ pub(super) fn push_three(bytes: &mut Vec<u8>, words: [u32; 3]) {
         *place = word.to_le_bytes();
     }
     bytes.extend_from_slice(&three);
+}
+
+/// The values of a constant in one line: text as it is, and several with commas between.
+pub(super) fn told(constant: &ConstantValues) -> String {
+    let value = |value: &LeafConstant| match value {
+        LeafConstant::Whole(number) => number.to_string(),
+        // Nothing but the check keeps line ends out, and options are anybody's.
+        LeafConstant::Text(text) => text.replace(char::is_control, " "),
+    };
+    constant.values.iter().map(value).collect::<Vec<_>>().join(", ")
 }

@@ -7,7 +7,9 @@
 use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{NamedAttribute, WriteError, colors, others, push_reals, push_three, uvs, write_items};
+use super::parts::{
+    NamedAttribute, WriteError, colors, others, push_reals, push_three, told, uvs, write_items,
+};
 use crate::mesh::Mesh;
 use crate::srgb;
 
@@ -24,6 +26,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
     name: None,
+    constants: Some("`comment`"),
     far: FarMeshes::Digits,
     splits: true,
     materials: false,
@@ -37,6 +40,12 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;
     if colors.is_some() {
         writeln!(out, "comment red, green and blue are {encoding}, clamped to 0..1 and rounded to 8 bits")?;
+    }
+    for (place, piece) in mesh.pieces().iter().enumerate() {
+        let part = piece.name.map_or_else(String::new, |name| format!("{name}: "));
+        for constant in choices.constants_of(place) {
+            writeln!(out, "comment {part}{} {}", constant.name, told(constant))?;
+        }
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;
     let is_far = !mesh.is_about_world();

@@ -29,6 +29,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: None,
     attributes: None,
     name: None,
+    constants: None,
     far: FarMeshes::Rounded,
     splits: false,
     materials: false,

@@ -1,8 +1,10 @@
 //! What files of each format hold: they are parsed back by hand, by the words of their specifications.
 
+use jbt_model::constant::{ConstantValues, LeafConstant};
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
 
 use super::*;
+use crate::mesh::MeshPart;
 
 /// A tetrahedron with awkward colours and attributes.
 pub(super) fn tetrahedron() -> Mesh {
@@ -427,5 +429,55 @@ fn the_extension_is_the_format() {
     assert_eq!(Format::of(Path::new("A.GLB")).unwrap(), Format::Glb);
     for path in ["a", "glb", ".glb", "a.glbx", "a.glb/b", ""] {
         assert_eq!(Format::of(Path::new(path)), None, "{path}");
+    }
+}
+
+#[test]
+fn files_have_the_constants_of_each_piece() {
+    let constant = |name: &str, values: Vec<LeafConstant>| ConstantValues { name: name.to_owned(), values };
+    let of_part = vec![constant("material", vec!["a \"<&> b".into()]), constant("part", vec![17.into()])];
+    let mesh = Mesh {
+        parts: [("none", 0, 0), ("hub", 3, 1), ("rim", 4, 4)]
+            .map(|(name, vertices, triangles)| MeshPart { name: name.to_owned(), vertices, triangles })
+            .into(),
+        triangles: vec![[0, 2, 1], [3, 3, 3], [3, 3, 3], [3, 3, 3]],
+        ..tetrahedron()
+    };
+    let of_rim = vec![constant("part", vec![1.into(), "two".into()])];
+    let options = ExportOptions { constants: vec![Vec::new(), of_part, of_rim], ..ExportOptions::default() };
+    let bytes_of = |format: Format| {
+        let mut file = Vec::new();
+        write_with(&mesh, format, &options, &mut file).unwrap();
+        file
+    };
+    let lossy = |format: Format| String::from_utf8_lossy(&bytes_of(format)).into_owned();
+    let glb = lossy(Format::Glb);
+    let end = glb.find("BIN\0").unwrap() - 4;
+    let json: serde_json::Value = serde_json::from_str(&glb[glb.find('{').unwrap()..end]).unwrap();
+    let extras: Vec<String> =
+        json["nodes"].as_array().unwrap().iter().map(|node| node["extras"].to_string()).collect();
+    assert_eq!(extras, [r#"{"material":"a \"<&> b","part":17}"#, r#"{"part":[1,"two"]}"#]);
+    let lines = |text: String, part: &str| text.lines().filter(|line| line.contains(part)).count();
+    let text = lossy(Format::Ply);
+    assert!(text.contains(
+        "comment hub: material a \"<&> b\ncomment hub: part 17\ncomment rim: part 1, two\nelement"
+    ));
+    let text = lossy(Format::Obj);
+    assert!(text.contains("\no hub\n# material a \"<&> b\n# part 17\nf "), "{text}");
+    let text = three_mf_model(&bytes_of(Format::ThreeMf));
+    assert!(text.contains(" xmlns:jbt=\"urn:jbt:constants\">"), "{text}");
+    assert!(
+        text.contains("<metadatagroup>\n<metadata name=\"jbt:material\">a &quot;&lt;&amp;> b</metadata>\n"),
+        "{text}"
+    );
+    assert_eq!(lines(text, "</metadatagroup>"), 2);
+    let text = lossy(Format::Usda);
+    assert!(text.contains("customData = {\n            string \"material\" = \"a _<&> b\"\n            int64 \"part\" = 17\n"), "{text}");
+    // Whoever has none has the file of before.
+    for format in Format::ALL {
+        let mut file = Vec::new();
+        let none = ExportOptions { constants: vec![Vec::new(); 3], ..ExportOptions::default() };
+        write_with(&mesh, format, &none, &mut file).unwrap();
+        assert_eq!(file, bytes(&mesh, format), "{format}");
     }
 }

@@ -9,7 +9,7 @@ use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
 use super::palette;
-use super::parts::{WriteError, colors, write_items};
+use super::parts::{WriteError, colors, told, write_items};
 use super::zip::Archive;
 use crate::mesh::{Mesh, MeshPiece};
 use crate::srgb;
@@ -24,6 +24,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: None,
     attributes: None,
     name: Some("`name` of the object"),
+    constants: Some("`metadata` of the object"),
     far: FarMeshes::Node,
     splits: false,
     materials: true,
@@ -38,6 +39,8 @@ const RELATIONS: &str = "<Relationships xmlns=\"http://schemas.openxmlformats.or
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+/// That of names of constants.
+const NAMESPACE: &str = "urn:jbt:constants";
 const MATERIALS: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 
 pub(super) fn write(
@@ -70,6 +73,10 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, out: &mut dyn Write) -> Result<(
     if colors(mesh).is_some() && choices.palette.is_none() {
         write!(out, " xmlns:m=\"{MATERIALS}\"")?;
     }
+    if choices.constants.iter().any(|constants| !constants.is_empty()) {
+        // Names of others than the specification's are in a namespace.
+        write!(out, " xmlns:jbt=\"{NAMESPACE}\"")?;
+    }
     writeln!(out, ">\n<metadata name=\"Application\">jbt</metadata>\n<resources>")?;
     if mesh.triangles.is_empty() {
         writeln!(out, "</resources>\n<build/>\n</model>")?;
@@ -84,9 +91,10 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, out: &mut dyn Write) -> Result<(
     if let Some(palette) = &palette {
         palette.write(choices.palette.is_some(), out)?;
     }
-    let pieces: Vec<_> = mesh.pieces().into_iter().filter(|piece| !piece.triangles.is_empty()).collect();
-    for (place, piece) in pieces.iter().enumerate() {
-        object(mesh, choices, piece, (place + 2, palette.as_ref()), out)?;
+    let pieces = mesh.pieces().into_iter().enumerate();
+    let pieces: Vec<_> = pieces.filter(|(_, piece)| !piece.triangles.is_empty()).collect();
+    for (number, piece) in pieces.iter().enumerate() {
+        object(mesh, choices, piece, (number + 2, palette.as_ref()), out)?;
     }
     writeln!(out, "</resources>\n<build>")?;
     let [x, y, z] = choices.place(mesh.origin);
@@ -106,14 +114,24 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, out: &mut dyn Write) -> Result<(
 fn object(
     mesh: &Mesh,
     choices: FileChoices<'_>,
-    piece: &MeshPiece<'_>,
+    (place, piece): &(usize, MeshPiece<'_>),
     (number, palette): (usize, Option<&Palette>),
     mut out: &mut dyn Write,
 ) -> Result<(), WriteError> {
     let group = if palette.is_some() { " pid=\"1\" pindex=\"0\"" } else { "" };
     let name = piece.name.or(choices.name);
     let name = name.map_or_else(String::new, |name| format!(" name=\"{}\"", in_quotes(name)));
-    writeln!(out, "<object id=\"{number}\" type=\"model\"{name}{group}>\n<mesh>\n<vertices>")?;
+    writeln!(out, "<object id=\"{number}\" type=\"model\"{name}{group}>")?;
+    let constants = choices.constants_of(*place);
+    if !constants.is_empty() {
+        writeln!(out, "<metadatagroup>")?;
+        for constant in constants {
+            let value = in_quotes(&told(constant));
+            writeln!(out, "<metadata name=\"jbt:{}\">{value}</metadata>", in_quotes(&constant.name))?;
+        }
+        writeln!(out, "</metadatagroup>")?;
+    }
+    writeln!(out, "<mesh>\n<vertices>")?;
     let first = piece.vertices.start;
     write_items(&mut out, piece.vertices.len(), |vertex, bytes| {
         let [x, y, z] = choices.place(mesh.positions[first + vertex]);

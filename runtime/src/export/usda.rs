@@ -5,10 +5,13 @@
 //! wide.
 
 use std::fmt::Display;
+use std::fmt::Write as _;
 use std::io::Write;
 
+use jbt_model::constant::{ConstantValues, LeafConstant};
+
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
-use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_items};
+use super::parts::{NamedAttribute, WriteError, colors, finite, others, told, uvs, write_items};
 use crate::mesh::{Mesh, MeshPiece};
 
 /// What is usual in these files.
@@ -21,6 +24,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     uv: Some("`st`"),
     attributes: Some("`primvars`, decimals"),
     name: Some("`displayName`"),
+    constants: Some("`customData` of the mesh"),
     far: FarMeshes::Node,
     splits: true,
     materials: false,
@@ -62,12 +66,8 @@ fn write_piece(
 ) -> Result<(), WriteError> {
     let encoding = choices.colors;
     let prim = if place == 0 { "mesh".to_owned() } else { format!("mesh_{place}") };
-    let name = piece.name.or(choices.name).map_or_else(String::new, |name| {
-        // Line ends and quotes would end it.
-        let name = name.replace(['\\', '"'], "_").replace(char::is_control, "_");
-        format!(" (\n        displayName = \"{name}\"\n    )")
-    });
-    writeln!(out, "    def Mesh \"{prim}\"{name}\n    {{")?;
+    let said = metadata(piece.name.or(choices.name), choices.constants_of(place));
+    writeln!(out, "    def Mesh \"{prim}\"{said}\n    {{")?;
     let first = piece.vertices.start;
     let corner = |pick: fn(f32, f32) -> f32| {
         let all = mesh.positions[piece.vertices.clone()].iter().map(|&position| choices.place(position));
@@ -116,6 +116,32 @@ fn write_piece(
     write_attributes(attributes, piece, out)?;
     writeln!(out, "    }}")?;
     Ok(())
+}
+
+/// What is said of a mesh in front of its numbers.
+fn metadata(name: Option<&str>, constants: &[ConstantValues]) -> String {
+    // Line ends and quotes would end it.
+    let quoted = |text: &str| text.replace(['\\', '"'], "_").replace(char::is_control, "_");
+    let mut said = String::new();
+    if let Some(name) = name {
+        let _ = writeln!(said, "        displayName = \"{}\"", quoted(name));
+    }
+    if !constants.is_empty() {
+        said.push_str("        customData = {\n");
+        for constant in constants {
+            let _ = match &constant.values[..] {
+                [LeafConstant::Whole(number)] => {
+                    writeln!(said, "            int64 \"{}\" = {number}", constant.name)
+                }
+                _ => {
+                    let value = quoted(&told(constant));
+                    writeln!(said, "            string \"{}\" = \"{value}\"", constant.name)
+                }
+            };
+        }
+        said.push_str("        }\n");
+    }
+    if said.is_empty() { said } else { format!(" (\n{said}    )") }
 }
 
 /// The attributes of the vertices of a piece.

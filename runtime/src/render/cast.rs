@@ -93,7 +93,7 @@ fn is_colored(tree: &CheckedTree) -> bool {
     let color = tree.attributes().iter().find(|group| &*group.name == "color");
     let is_white = color.is_none_or(|color| color.default.iter().all(|&channel| channel == 1.0));
     let gives = |kind: &NodeKind| match kind {
-        NodeKind::Attribute { name, .. } => &**name == "color",
+        NodeKind::Attribute { name, .. } => &**name == "color" && kind.constant().is_none(),
         NodeKind::Particles(particles) => particles.values_of("color").is_some(),
         NodeKind::Primitive(_)
         | NodeKind::Combine(_)

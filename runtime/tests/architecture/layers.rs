@@ -16,6 +16,7 @@ const MODEL: &[&[&str]] = &[
         "affine",
         "angle",
         "bounds",
+        "constant",
         "diagnostic",
         "eigen",
         "field",
@@ -44,7 +45,7 @@ const MODEL: &[&[&str]] = &[
     // What it means.
     &["check"],
     &["descent"],
-    &["owner", "walk"],
+    &["owner", "tour", "walk"],
     // Ways to write it.
     &["scopes", "term"],
     &["builder"],

@@ -13,6 +13,7 @@ use crate::computed::share;
 use crate::demand::Demand;
 use crate::names::ComputedId;
 use crate::position::{Position, PositionKey, Trails, position_key};
+use jbt_model::attribute::AttributeValue;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, Extreme, OperatorForm, ReduceCode, Union};
 use jbt_model::expression::Expression;
@@ -160,6 +161,8 @@ impl<'a> Finder<'a> {
                     };
                     moved = Some(Position { space, map: map * *inner, trail });
                 }
+                // Programs know no constants.
+                NodeKind::Attribute { value: AttributeValue::Constant(_), .. } => {}
                 NodeKind::Attribute { name, value } => {
                     let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {

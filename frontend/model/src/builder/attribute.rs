@@ -1,6 +1,7 @@
 //! Attributes of trees: numbers, patterns and the uv of skeletons.
 
 use super::{Number, Pattern, Vector};
+use crate::constant::LeafConstant;
 use crate::tree::Tree;
 use crate::written::{Written, WrittenAttribute, WrittenTextured, WrittenUv};
 
@@ -19,6 +20,13 @@ impl Tree {
     #[must_use]
     pub fn attribute<T: Into<Number> + Clone>(&self, name: &str, values: &[T]) -> Self {
         self.given(name, WrittenAttribute::Numbers(numbers(values)))
+    }
+
+    /// With a constant for every leaf below that has no nearer one of this name: text or a whole number, as a
+    /// material or the number of a part. The [owner](crate::owner::Owner::constants) of a point answers it.
+    #[must_use]
+    pub fn constant(&self, name: &str, value: impl Into<LeafConstant>) -> Self {
+        self.given(name, WrittenAttribute::Constant(value.into()))
     }
 
     /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in

@@ -12,7 +12,7 @@ use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 use crate::tree::Tree;
 use crate::warp::WarpKind;
-use crate::written::{FieldNumber, WrittenFalloff};
+use crate::written::{FieldNumber, Radius, WrittenFalloff};
 
 /// Goes through the fields of a member, and hands what they are as arguments, and their values as parameters,
 /// on: `arguments! { then (words) () () fields }` is `then! { (words) (arguments) (values) }`.
@@ -91,8 +91,9 @@ macro_rules! documented {
 macro_rules! skeleton {
     (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
         documented! { skeleton $name $doc
-            /// At the distance `support_radius` from it, the field reaches zero.
-            pub fn $function($($taken)* support_radius: impl Into<Number>) -> Tree {
+            /// At the distance `support_radius` from it, the field reaches zero; or it is a
+            /// [`surface`](crate::builder::surface) radius.
+            pub fn $function($($taken)* support_radius: impl Into<Radius>) -> Tree {
                 leaf(SkeletonKind::$name, vec![$($value)*], support_radius)
             }
         }

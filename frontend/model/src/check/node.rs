@@ -93,6 +93,7 @@ fn describe(kind: &NodeKind) -> String {
         NodeKind::Expression(_) => "a node `expression`".to_owned(),
         NodeKind::Affine(_) => "an affine map".to_owned(),
         NodeKind::Warp(warp) => format!("a {}", warp.name()),
+        NodeKind::Attribute { name, .. } if kind.constant().is_some() => format!("the constant `{name}`"),
         NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
     }
 }

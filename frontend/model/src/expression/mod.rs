@@ -71,7 +71,7 @@ use crate::number::{Binary, Number, Step};
 pub use form::Form;
 pub use form::{Assembled, Assembler, Draft};
 pub use operand::Operand;
-pub use write::write;
+pub use write::{FormulaSteps, write};
 
 /// The largest magnitude of the field of an expression and of an attribute value: 2^100. Sums and products
 /// with ordinary fields stay finite.

@@ -9,6 +9,32 @@ use super::operation::Operation;
 use crate::function::Function;
 use crate::number::{Binary, Number, Step, Variable, show};
 
+/// The steps of a formula, in postfix order.
+#[derive(Clone, Debug)]
+pub struct FormulaSteps {
+    /// Of the parts that are used more than once: a part knows those in front of it by their places.
+    pub definitions: Vec<Vec<Step>>,
+    /// Of the values.
+    pub results: Vec<Vec<Step>>,
+}
+
+impl FormulaSteps {
+    /// Those of a form with these numbers.
+    #[must_use]
+    pub fn new(form: &Form, numbers: &[Number]) -> Self {
+        let shared = (0..).zip(form.uses()).filter(|(_, uses)| *uses > 1).map(|(step, _)| step);
+        let mut place = vec![None; form.steps()];
+        let all: Vec<(Operation, &[Operand])> = form.iter().collect();
+        let mut definitions = Vec::new();
+        for step in shared {
+            definitions.push(postfix(&all, Operand::Step(step), numbers, &place));
+            place[step as usize] = Some(definitions.len() as u32 - 1);
+        }
+        let results = form.results.iter().map(|&result| postfix(&all, result, numbers, &place)).collect();
+        Self { definitions, results }
+    }
+}
+
 /// Writes a formula; `child` and `definition` name children and definitions.
 pub fn write<W: fmt::Write>(
     out: &mut W,
@@ -18,26 +44,21 @@ pub fn write<W: fmt::Write>(
     definition: impl Fn(usize) -> String,
     tuple: bool,
 ) -> fmt::Result {
-    let shared: Vec<u32> =
-        (0..).zip(form.uses()).filter(|(_, uses)| *uses > 1).map(|(step, _)| step).collect();
-    let mut place = vec![None; form.steps()];
-    let all: Vec<(Operation, &[Operand])> = form.iter().collect();
+    let FormulaSteps { definitions, results } = FormulaSteps::new(form, numbers);
     let mut name = |out: &mut W, variable: Variable| match variable {
         Variable::Coordinate(axis) => out.write_str(["x", "y", "z"][axis as usize]),
         Variable::Child(index) => write!(out, "field({})", child(index as usize)),
         Variable::Definition(index) => out.write_str(&definition(index as usize)),
     };
-    for (index, &step) in shared.iter().enumerate() {
+    for (index, steps) in definitions.iter().enumerate() {
         write!(out, "{} = ", definition(index))?;
-        let steps = postfix(&all, Operand::Step(step), numbers, &place);
-        show(&steps, out, &mut name)?;
+        show(steps, out, &mut name)?;
         out.write_str(", ")?;
-        place[step as usize] = Some(index as u32);
     }
     out.write_str(if tuple { "(" } else { "" })?;
-    for (index, &result) in form.results.iter().enumerate() {
+    for (index, steps) in results.iter().enumerate() {
         out.write_str(if index == 0 { "" } else { ", " })?;
-        show(&postfix(&all, result, numbers, &place), out, &mut name)?;
+        show(steps, out, &mut name)?;
     }
     out.write_str(if tuple { ")" } else { "" })
 }

@@ -36,6 +36,12 @@ use member::FunctionMember as _;
 pub struct FixedFalloff(pub(crate) Falloff);
 
 impl FixedFalloff {
+    /// The falloff.
+    #[must_use]
+    pub const fn falloff(self) -> Falloff {
+        self.0
+    }
+
     /// The numbers of its parameters.
     fn bits(&self) -> impl Iterator<Item = u64> + use<> {
         self.0.to_fields().into_iter().flat_map(|field| field.numbers().to_vec()).map(f64::to_bits)

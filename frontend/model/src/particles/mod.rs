@@ -170,6 +170,12 @@ impl Particles {
         self.values.iter().find(|values| *values.name == *group)
     }
 
+    /// The same with values in one more group.
+    pub(crate) fn with_values(&self, values: ParticleValues) -> Self {
+        let values = self.values.iter().cloned().chain([values]).collect();
+        Self { values, ..self.clone() }
+    }
+
     /// Where the sum of their fields can be something else than zero, and negative.
     #[must_use]
     pub fn extent(&self) -> Extent {

@@ -2,6 +2,7 @@
 
 use super::field::{FieldNumber, as_written};
 use crate::attribute::{AttributeValue, Textured, UvMap};
+use crate::constant::LeafConstant;
 use crate::expression::Formula;
 use crate::number::{Number, values};
 use crate::texture::TextureKind;
@@ -17,6 +18,8 @@ pub enum WrittenAttribute {
     Uv(WrittenUv),
     /// A formula with one value for each channel.
     Expressed(Formula),
+    /// What leaves are of, which belongs to no group.
+    Constant(LeafConstant),
 }
 
 /// A mixture of two values by a texture.
@@ -70,6 +73,7 @@ impl From<&AttributeValue> for WrittenAttribute {
             }),
             AttributeValue::Uv(map) => Self::Uv((*map).into()),
             AttributeValue::Expressed(expression) => Self::Expressed(expression.into()),
+            AttributeValue::Constant(value) => Self::Constant(value.clone()),
         }
     }
 }
@@ -92,6 +96,7 @@ impl WrittenAttribute {
                 shift: values(shift),
             }),
             Self::Expressed(formula) => AttributeValue::Expressed(formula.expression()),
+            Self::Constant(value) => AttributeValue::Constant(value.clone()),
         }
     }
 
@@ -104,6 +109,7 @@ impl WrittenAttribute {
                 (&[], [scale, std::slice::from_ref(degrees), shift])
             }
             Self::Expressed(formula) => (&[], [&formula.numbers, &[], &[]]),
+            Self::Constant(_) => (&[], [&[], &[], &[]]),
         };
         fields.iter().flat_map(FieldNumber::numbers).chain(numbers.into_iter().flatten())
     }
@@ -119,6 +125,7 @@ impl WrittenAttribute {
                 scale.iter_mut().chain([degrees]).chain(shift).collect()
             }
             Self::Expressed(formula) => formula.numbers.iter_mut().collect(),
+            Self::Constant(_) => Vec::new(),
         }
     }
 }

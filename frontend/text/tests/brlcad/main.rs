@@ -289,7 +289,7 @@ fn text_of_both_versions_says_the_same() {
         P2 {0 1 0 1} P3 {0 -1 0 1} P4 {0 0 1 1} P5 {0 0 -1 1}\n\
         put {tube} pipe V0 {0 0 0} O0 1 I0 0.5 R0 0 V1 {3 0 0} O1 1 I1 0.5 R1 0\n\
         put {top} comb region no tree {u {- {l a} {l pin {1 0 0 0.5  0 1 0 0  0 0 1 0\n 0 0 0 1}}} {+ {l eight} {l tube}}}\n\
-        attr set {top} {color} {255/0/0}\nfoo bar\n";
+        attr set {top} {color} {255/0/0} {shader} plastic\nfoo bar\n";
     let four = "I 0 v4\nof cups\n\
         S 19 a 0 0 0 0 1 0 0 0 1 0 0 0 1 0 0 0 0 0 0 0 0 0 0 0 0\n\
         p pin 0 0 0 0 0 2 0.5 0.25\n\
@@ -396,4 +396,45 @@ fn hostile_files_end_soon() {
         let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(60)]).into_owned();
         assert!(start.elapsed().as_secs_f64() < 5.0, "{shown}: {:?}", start.elapsed());
     }
+}
+
+#[test]
+fn regions_have_their_numbers_as_constants() {
+    let told = |bytes: &[u8], p: [f64; 3]| -> Vec<String> {
+        let imported = read(bytes, &Options::default());
+        assert_reads_back(&imported.model);
+        let tree = imported.model.check().unwrap();
+        let owner = jbt_model::owner::owner(&tree, p).unwrap();
+        owner.constants(&tree).into_iter().map(|(name, value)| format!("{name} {value}")).collect()
+    };
+    let attributes = [
+        ("region", "R"),
+        ("region_id", "1001"),
+        ("aircode", "0"),
+        ("giftmater", "7"),
+        ("material_name", "mild \"steel\""),
+        ("oshader", "plastic {sp 0.5}"),
+    ];
+    let bytes = file([
+        ball("a", 0.0),
+        ball("b", 10.0),
+        combination("r", &attributes, &[("a", None)], &[]),
+        combination("s", &[("region", "R"), ("region_id", "1002"), ("aircode", "3")], &[("b", None)], &[]),
+        combination("all", &[("shader", "glass"), ("region_id", "5")], &[("r", None), ("s", None)], &[]),
+    ]);
+    let expected =
+        ["material \"mild 'steel'\"", "material_id 7", "region_id 1001", "shader \"plastic {sp 0.5}\""];
+    assert_eq!(told(&bytes, PLACES[0]), expected);
+    assert_eq!(told(&bytes, [10.0, 0.0, 0.0]), ["aircode 3", "region_id 1002", "shader \"glass\""]);
+    // The same in the texts of both versions.
+    let text = "title {t}\nput {a} ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\n\
+                put {top} comb region yes region_id 1005 air 2 mat 4 tree {l a}\n";
+    assert_eq!(told(text.as_bytes(), PLACES[0]), ["aircode 2", "material_id 4", "region_id 1005"]);
+    let numbers = "0 0 0 1 0 0 0 1 0 0 0 1 0 0 0 0 0 0 0 0 0 0 0 0";
+    let matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+    let text = format!(
+        "I 0 v4\nt\nS 19 a 0 {numbers}\nC Y top 1006 9 1 0 8 100 0 0 0 0 1 0 0\nmirror re=0.9\nM u a {matrix} 0\n"
+    );
+    let expected = ["aircode 9", "material_id 8", "region_id 1006", "shader \"mirror re=0.9\""];
+    assert_eq!(told(text.as_bytes(), PLACES[0]), expected);
 }

@@ -16,7 +16,7 @@ use jbt_model::tree::Tree;
 
 use super::database::{Combination, Database, ObjectContent, ProgramStep, Properties};
 use super::leaf::{self, Flaw, LeafStyle};
-use super::operand::{CombinationSetting, PointSet, SetPart, colored};
+use super::operand::{CombinationSetting, PointSet, SetPart, colored, with_constant};
 use super::solid::SolidKind;
 
 /// How thick the field of a half space is, for the size of the largest solid.
@@ -40,7 +40,7 @@ pub(super) fn build(database: &mut Database, object: Option<&str>) -> Option<Tre
         nodes: 0,
         notes: Vec::new(),
         noted: HashMap::new(),
-        has_colors: database.objects.iter().any(|object| object.properties.color.is_some())
+        has_looks: database.objects.iter().any(|object| object.properties.has_looks())
             || !database.palette.is_empty(),
         database,
     };
@@ -157,13 +157,14 @@ struct TreeBuilder<'a, 'b> {
     nodes: usize,
     notes: Vec<SolidNote>,
     noted: HashMap<String, usize>,
-    has_colors: bool,
+    /// Whether anything has a colour or a constant.
+    has_looks: bool,
 }
 
 impl TreeBuilder<'_, '_> {
     /// Builds a root. `None` after a message that ends it all.
     fn run(&mut self, root: u32) -> Option<PointSet> {
-        let is_plain = self.is_plain(root, !self.has_colors);
+        let is_plain = self.is_plain(root, !self.has_looks);
         let mut tasks = vec![BuildTask::Enter { object: root, is_plain }];
         while let Some(task) = tasks.pop() {
             match task {
@@ -206,7 +207,7 @@ impl TreeBuilder<'_, '_> {
         }
         let is_new = states.iter().all(|state| matches!(state, ObjectState::New));
         let entry = &self.database.objects[object as usize];
-        let (span, properties) = (entry.span, entry.properties);
+        let (span, properties) = (entry.span, entry.properties.clone());
         let built = match &entry.content {
             ObjectContent::Combination(made) => {
                 let members = members(self.database, made, is_plain || is_decided(&properties));
@@ -256,7 +257,7 @@ impl TreeBuilder<'_, '_> {
     /// The set of a combination whose members are built.
     fn put_together(&mut self, object: u32, is_plain: bool) -> Option<Built> {
         let entry = &self.database.objects[object as usize];
-        let (span, properties) = (entry.span, entry.properties);
+        let (span, properties) = (entry.span, entry.properties.clone());
         let ObjectContent::Combination(made) = &entry.content else { return Some(Built::MISSING) };
         let below = members(self.database, made, is_plain || is_decided(&properties));
         let mut operands = Vec::with_capacity(below.len());
@@ -304,6 +305,8 @@ impl TreeBuilder<'_, '_> {
             Some(own) => SetPart { tree: colored(part.tree, own, span), ..part },
             None => part,
         });
+        let constants = properties.constants().filter(|_| !is_plain);
+        let part = part.map(|part| constants.fold(part, |part, one| with_constant(part, one, span)));
         Some(Built { color: color.filter(|_| part.is_some()), part, has_radius })
     }
 

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use jbt_ir::limits::MAX_NODES;
+use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::{Report, clip};
 
@@ -47,7 +48,7 @@ pub(super) enum ObjectContent {
 }
 
 /// What is said of an object beside its shape.
-#[derive(Clone, Copy, Default, Debug)]
+#[derive(Clone, Default, Debug)]
 pub(super) struct Properties {
     /// Whether it is one piece of one material.
     pub(super) is_region: bool,
@@ -57,6 +58,14 @@ pub(super) struct Properties {
     pub(super) inherits: bool,
     /// The number of a region.
     pub(super) region: Option<i64>,
+    /// What is not solid, by its number; 0 is nothing special.
+    pub(super) aircode: Option<i64>,
+    /// The material of a region, by its number in a table of the user (GIFT).
+    pub(super) material: Option<i64>,
+    /// The material of a region, by its name.
+    pub(super) material_name: Option<String>,
+    /// What its surface looks like, in the words of a shader.
+    pub(super) shader: Option<String>,
 }
 
 /// The colour of regions whose numbers are in a range.
@@ -191,6 +200,14 @@ impl<'a> Database<'a> {
             b"region" => properties.is_region = is_yes,
             b"inherit" => properties.inherits = is_yes,
             b"region_id" | b"id" => properties.region = word.trim().parse().ok(),
+            b"aircode" | b"air" => properties.aircode = word.trim().parse().ok(),
+            b"material_name" | b"material" if !word.trim().is_empty() => {
+                properties.material_name = Some(line_of(&word));
+            }
+            b"material_id" | b"giftmater" | b"GIFTmater" | b"mat" => {
+                properties.material = word.trim().parse().ok();
+            }
+            b"oshader" | b"shader" if !word.trim().is_empty() => properties.shader = Some(line_of(&word)),
             b"color" | b"rgb" => match color(&word) {
                 Some(color) => properties.color = Some(color),
                 None => {
@@ -203,6 +220,39 @@ impl<'a> Database<'a> {
             },
             _ => {}
         }
+    }
+}
+
+/// A text without what ends a line or a quote.
+pub(super) fn line_of(text: &str) -> String {
+    let kept = |c: char| match c {
+        '"' => '\'',
+        c if c.is_control() => ' ',
+        c => c,
+    };
+    text.trim().chars().map(kept).collect()
+}
+
+impl Properties {
+    /// Whether solids below have a colour or constants of it.
+    pub(super) fn has_looks(&self) -> bool {
+        self.color.is_some() || self.constants().next().is_some()
+    }
+
+    /// The constants of the solids below. Numbers count for regions alone.
+    pub(super) fn constants(&self) -> impl Iterator<Item = (&'static str, LeafConstant)> {
+        let fits = |number: &i64| number.abs() <= LARGEST_CONSTANT;
+        let numbers = [
+            ("region_id", self.region),
+            ("aircode", self.aircode.filter(|&code| code != 0)),
+            ("material_id", self.material),
+        ];
+        let numbers = numbers.into_iter().filter(|_| self.is_region);
+        let numbers =
+            numbers.filter_map(move |(name, number)| Some((name, LeafConstant::Whole(number.filter(fits)?))));
+        let material = self.material_name.clone().filter(|_| self.is_region);
+        let texts = [("material", material), ("shader", self.shader.clone())];
+        numbers.chain(texts.into_iter().filter_map(|(name, text)| Some((name, LeafConstant::Text(text?)))))
     }
 }
 

@@ -12,7 +12,7 @@
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::database::{
-    Combination, Database, MemberUse, Object, ObjectContent, PaletteRange, ProgramStep, Properties,
+    Combination, Database, MemberUse, Object, ObjectContent, PaletteRange, ProgramStep, Properties, line_of,
 };
 use super::solid::{DatabaseSolid, SolidKind};
 use super::tcl::{number, shown};
@@ -239,6 +239,8 @@ fn combination(database: &mut Database, lines: &mut FileLines, line: &FileLine) 
     let name = line.word(2, "the name of a combination")?;
     let mut properties = Properties { is_region: line.slice(1) != b"N", ..Properties::default() };
     properties.region = line.integer(3);
+    properties.aircode = line.integer(4);
+    properties.material = line.integer(7);
     // A number that is not 0 says that the colour counts.
     if line.integer(9).is_some_and(|override_color| override_color != 0) {
         let rgb = [10, 11, 12].map(|place| line.integer(place).and_then(|byte| u8::try_from(byte).ok()));
@@ -250,7 +252,9 @@ fn combination(database: &mut Database, lines: &mut FileLines, line: &FileLine) 
     // Flags say whether lines about the material follow.
     for place in [13, 14] {
         if line.integer(place) == Some(1) && lines.peek() != b"M" {
-            lines.next();
+            let said = lines.next().filter(|_| place == 13);
+            let words = said.map(|line| line_of(&database.text(line.span))).filter(|words| !words.is_empty());
+            properties.shader = words.or(properties.shader);
         }
     }
     let mut made = Combination::default();

@@ -11,8 +11,10 @@
 
 use std::collections::VecDeque;
 
+use jbt_model::attribute::AttributeValue;
 use jbt_model::bounds::Bounds;
 use jbt_model::combine::{Combinator, Complement};
+use jbt_model::constant::LeafConstant;
 use jbt_model::diagnostic::Span;
 use jbt_model::kind::NodeKind;
 use jbt_model::number::Number;
@@ -276,4 +278,10 @@ pub(super) fn colored(tree: Tree, color: [u8; 3], span: Span) -> Tree {
     let values = color.map(|byte| linear(&Number::from(f64::from(byte) / 255.0)).value());
     let kind = NodeKind::Attribute { name: "color".into(), value: values.to_vec().into() };
     Tree::at(span, kind, vec![tree])
+}
+
+/// A part whose leaves have a constant.
+pub(super) fn with_constant(part: SetPart, (name, value): (&str, LeafConstant), span: Span) -> SetPart {
+    let kind = NodeKind::Attribute { name: name.into(), value: AttributeValue::Constant(value) };
+    SetPart { tree: Tree::at(span, kind, vec![part.tree]), ..part }
 }

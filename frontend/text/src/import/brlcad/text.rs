@@ -137,7 +137,7 @@ impl<'a> TextReader<'a> {
                 .add(|| Diagnostic::warning(Some(name), format!("no object above is called `{shown}`")));
             return Ok(());
         };
-        let mut properties = database.objects[object as usize].properties;
+        let mut properties = database.objects[object as usize].properties.clone();
         // The usual name of a colour wins if both are there.
         let has_color = pairs.iter().any(|(key, _)| *key == b"color");
         for (key, value) in pairs {

@@ -1,0 +1,58 @@
+//! Constants of leaves.
+//!
+//! ```text
+//! constant material "steel" { child }
+//! constant part 17 { child }                                 a whole number, or an expression that is one
+//! ```
+
+use super::block::{Begun, Head};
+use super::expression::ExpressionPlace;
+use super::lex::{Token, TokenKind};
+use super::state::Parser;
+use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
+use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::parameter::Fixture;
+use jbt_model::word::normalized;
+use jbt_model::written::{Written, WrittenAttribute};
+
+impl<'a> Parser<'a> {
+    /// A constant whose word, `start`, has just been taken.
+    pub(super) fn constant(&mut self, start: Token) -> Begun<'a> {
+        let Some(name) = self.peek_word() else {
+            self.expected_at(self.peek(), "expected the name of a constant");
+            return self.block(start, Head::Broken);
+        };
+        self.next();
+        let value = self.constant_value();
+        let value = value.map(WrittenAttribute::Constant);
+        self.unary(start, value.map(|value| Written::Attribute { name: normalized(name).into(), value }))
+    }
+
+    /// Text in quotes, or a whole number; nothing after an error.
+    fn constant_value(&mut self) -> Option<LeafConstant> {
+        let token = self.peek();
+        if token.kind == TokenKind::Quoted {
+            self.next();
+            return Some(self.text(token).trim_matches('"').into());
+        }
+        if token.is(b'{') {
+            self.expected_at(token, "expected text in quotes, or a whole number");
+            return None;
+        }
+        let number = self.expression(ExpressionPlace::Alone).number;
+        let span = Span::new(token.start, self.previous_end());
+        self.declares(Fixture::Declaration, &number, span);
+        let value = number.value();
+        if value.is_nan() {
+            return None;
+        }
+        if value.fract() != 0.0 || value.abs() > LARGEST_CONSTANT as f64 {
+            self.report(|| {
+                Diagnostic::error(Some(span), format!("a constant is {value}"))
+                    .expected("expected text in quotes, or a whole number")
+            });
+            return None;
+        }
+        Some(LeafConstant::Whole(value as i64))
+    }
+}
