@@ -27,13 +27,11 @@ impl SampleWindow {
             let axis_of = &bricks.axes[axis];
             [axis_of[self.low[axis]], axis_of[self.high[axis]]]
         });
+        let is_in =
+            |index: usize| (0..3).all(|axis| (ends[axis][0]..=ends[axis][1]).contains(&planes[axis][index]));
+        let needed = (0..planes[0].len()).filter(|&index| is_in(index));
         chosen.clear();
-        for index in 0..planes[0].len() {
-            let is_in = |axis: usize| (ends[axis][0]..=ends[axis][1]).contains(&planes[axis][index]);
-            if (0..3).all(is_in) {
-                chosen.push(index as u32);
-            }
-        }
+        chosen.extend(needed.map(|index| index as u32));
         for plane in planes {
             for (place, &index) in chosen.iter().enumerate() {
                 plane[place] = plane[index as usize];
