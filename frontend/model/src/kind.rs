@@ -1,5 +1,6 @@
 //! What a node does, with plain values. (Other `..Kind`s, as `SkeletonKind`, have no values.)
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -99,10 +100,7 @@ impl NodeKind {
     #[must_use]
     pub fn rows(&self) -> Option<[[f64; 4]; 3]> {
         match self {
-            Self::Affine(map) => {
-                let columns = map.to_cols_array_2d();
-                Some([0, 1, 2].map(|row| columns.map(|column| column[row])))
-            }
+            Self::Affine(map) => Some(rows_of(map)),
             Self::Primitive(_)
             | Self::Particles(_)
             | Self::Combine(_)
@@ -117,17 +115,28 @@ impl NodeKind {
     /// number is near no child: the check has excluded it.
     #[must_use]
     pub fn asked<'a, T>(&self, children: &'a [T]) -> &'a [T] {
+        &children[self.places_asked(children.len())]
+    }
+
+    /// The places of the children that answer, of so many.
+    pub(crate) fn places_asked(&self, count: usize) -> Range<usize> {
         match self {
-            Self::Select(which) => std::slice::from_ref(&children[chosen(*which)]),
+            Self::Select(which) => chosen(*which)..chosen(*which) + 1,
             Self::Primitive(_)
             | Self::Particles(_)
             | Self::Combine(_)
             | Self::Expression(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => children,
+            | Self::Attribute { .. } => 0..count,
         }
     }
+}
+
+/// The rows of a map, the last column of which is the shift.
+pub(crate) fn rows_of(map: &DAffine3) -> [[f64; 4]; 3] {
+    let columns = map.to_cols_array_2d();
+    [0, 1, 2].map(|row| columns.map(|column| column[row]))
 }
 
 /// The place of the child that a selector's number stands for: the nearest whole number. The number has been

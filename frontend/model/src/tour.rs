@@ -15,7 +15,7 @@ use std::rc::Rc;
 use glam::DAffine3;
 
 use crate::check::{CheckedTree, NodeId};
-use crate::kind::{NodeKind, chosen};
+use crate::kind::{NodeKind, rows_of};
 
 /// A node on one of its paths, and what the nodes above it make of it.
 #[derive(Clone, PartialEq, Debug)]
@@ -42,8 +42,7 @@ impl TourStep {
     /// [warp](Self::warp); the last column is the shift. An affine node counts for those below it alone.
     #[must_use]
     pub fn rows(&self) -> [[f64; 4]; 3] {
-        let columns = self.state.map.to_cols_array_2d();
-        [0, 1, 2].map(|row| columns.map(|column| column[row]))
+        rows_of(&self.state.map)
     }
 
     /// The nearest warp above, which no map can stand for.
@@ -130,16 +129,7 @@ impl Iterator for Tour<'_> {
             let node = self.tree.node(step.node);
             self.stack.push(TourEvent::Leave(step.clone()));
             self.without = self.stack.len();
-            let children = match node.kind {
-                NodeKind::Select(which) => chosen(which)..chosen(which) + 1,
-                NodeKind::Primitive(_)
-                | NodeKind::Particles(_)
-                | NodeKind::Combine(_)
-                | NodeKind::Expression(_)
-                | NodeKind::Affine(_)
-                | NodeKind::Warp(_)
-                | NodeKind::Attribute { .. } => 0..node.children.len(),
-            };
+            let children = node.kind.places_asked(node.children.len());
             for child in children.rev() {
                 let below = self.below(step, child);
                 self.stack.push(TourEvent::Enter(below));

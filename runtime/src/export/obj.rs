@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Sub;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{WriteError, colors, finite, told, uvs, write_items};
+use super::parts::{WriteError, colors, finite, in_one_line, told, uvs, write_items};
 use crate::mesh::Mesh;
 
 /// What is usual in these files.
@@ -65,7 +65,7 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
             writeln!(out, "{}", object(name))?;
         }
         for constant in choices.constants_of(place) {
-            writeln!(out, "# {} {}", constant.name, told(constant))?;
+            writeln!(out, "# {} {}", in_one_line(&constant.name), told(constant))?;
         }
         let first = piece.triangles.start;
         write_items(out, piece.triangles.len(), |triangle, bytes| {

@@ -131,8 +131,12 @@ pub(super) fn push_three(bytes: &mut Vec<u8>, words: [u32; 3]) {
 pub(super) fn told(constant: &ConstantValues) -> String {
     let value = |value: &LeafConstant| match value {
         LeafConstant::Whole(number) => number.to_string(),
-        // Nothing but the check keeps line ends out, and options are anybody's.
-        LeafConstant::Text(text) => text.replace(char::is_control, " "),
+        LeafConstant::Text(text) => in_one_line(text),
     };
     constant.values.iter().map(value).collect::<Vec<_>>().join(", ")
+}
+
+/// Text for a line of its own: nothing but the check keeps line ends out, and options are anybody's.
+pub(super) fn in_one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }

@@ -8,7 +8,7 @@ use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{
-    NamedAttribute, WriteError, colors, others, push_reals, push_three, told, uvs, write_items,
+    NamedAttribute, WriteError, colors, in_one_line, others, push_reals, push_three, told, uvs, write_items,
 };
 use crate::mesh::Mesh;
 use crate::srgb;
@@ -42,9 +42,9 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices<'_>, out: &mut impl Write)
         writeln!(out, "comment red, green and blue are {encoding}, clamped to 0..1 and rounded to 8 bits")?;
     }
     for (place, piece) in mesh.pieces().iter().enumerate() {
-        let part = piece.name.map_or_else(String::new, |name| format!("{name}: "));
+        let part = piece.name.map_or_else(String::new, |name| format!("{}: ", in_one_line(name)));
         for constant in choices.constants_of(place) {
-            writeln!(out, "comment {part}{} {}", constant.name, told(constant))?;
+            writeln!(out, "comment {part}{} {}", in_one_line(&constant.name), told(constant))?;
         }
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;

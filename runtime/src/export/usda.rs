@@ -131,11 +131,11 @@ fn metadata(name: Option<&str>, constants: &[ConstantValues]) -> String {
         for constant in constants {
             let _ = match &constant.values[..] {
                 [LeafConstant::Whole(number)] => {
-                    writeln!(said, "            int64 \"{}\" = {number}", constant.name)
+                    writeln!(said, "            int64 \"{}\" = {number}", quoted(&constant.name))
                 }
                 _ => {
                     let value = quoted(&told(constant));
-                    writeln!(said, "            string \"{}\" = \"{value}\"", constant.name)
+                    writeln!(said, "            string \"{}\" = \"{value}\"", quoted(&constant.name))
                 }
             };
         }

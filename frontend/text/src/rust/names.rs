@@ -1,6 +1,6 @@
 //! Names of variables in printed Rust.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use jbt_model::combine::CombinatorKind;
 use jbt_model::falloff::FalloffKind;
@@ -16,7 +16,11 @@ const TAKEN: &str = "as async await abstract become box break const continue cra
                      where while yield x y z param particles primitive surface surface_particles jbt root";
 
 /// The names that are taken.
-pub(super) struct RustNames(HashSet<String>);
+pub(super) struct RustNames {
+    taken: HashSet<String>,
+    /// Of each stem, the number that was taken last.
+    last: HashMap<String, usize>,
+}
 
 impl RustNames {
     pub(super) fn new() -> Self {
@@ -26,7 +30,8 @@ impl RustNames {
         let members = members.chain(WarpKind::ALL.iter().map(|kind| kind.constructor()));
         let members = members.chain(MapKind::ALL.iter().map(|kind| kind.constructor()));
         let members = members.chain(CombinatorKind::ALL.iter().map(|kind| kind.constructor()));
-        Self(members.chain(TAKEN.split_ascii_whitespace()).map(str::to_owned).collect())
+        let taken = members.chain(TAKEN.split_ascii_whitespace()).map(str::to_owned).collect();
+        Self { taken, last: HashMap::new() }
     }
 
     /// A variable like this name, if that is free, else one with a number behind.
@@ -36,7 +41,7 @@ impl RustNames {
         if !jbt_model::word::is_identifier(&stem) {
             stem = "node".to_owned();
         }
-        if self.0.insert(stem.clone()) {
+        if self.taken.insert(stem.clone()) {
             return stem;
         }
         self.numbered(&format!("{stem}_"))
@@ -44,13 +49,13 @@ impl RustNames {
 
     /// The first free one of a stem and a number.
     pub(super) fn numbered(&mut self, stem: &str) -> String {
-        let mut number = 1_usize;
+        let number = self.last.entry(stem.to_owned()).or_default();
         loop {
+            *number += 1;
             let name = format!("{stem}{number}");
-            if self.0.insert(name.clone()) {
+            if self.taken.insert(name.clone()) {
                 return name;
             }
-            number += 1;
         }
     }
 }

@@ -430,6 +430,9 @@ fn regions_have_their_numbers_as_constants() {
     let text = "title {t}\nput {a} ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\n\
                 put {top} comb region yes region_id 1005 air 2 mat 4 tree {l a}\n";
     assert_eq!(told(text.as_bytes(), PLACES[0]), ["aircode 2", "material_id 4", "region_id 1005"]);
+    // Numbers that no reader of a file would get as they are make no constants.
+    let beyond = text.replace("mat 4", "mat -9223372036854775808");
+    assert_eq!(told(beyond.as_bytes(), PLACES[0]), ["aircode 2", "region_id 1005"]);
     let numbers = "0 0 0 1 0 0 0 1 0 0 0 1 0 0 0 0 0 0 0 0 0 0 0 0";
     let matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
     let text = format!(

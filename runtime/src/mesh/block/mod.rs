@@ -133,16 +133,20 @@ pub(crate) fn extract<F: Field>(
     let scope = DivisionScope::Cells(known);
     let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    // Two layers of cells are enough, unless a chain of flips leads through them.
-    let known = if reach > LatticeBlock::REACH { known } else { block.cells(lattice, NEAR) };
-    let window = Some(SampleWindow::of_cells(known));
-    let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
-    let mut found = crossing::look(&bricks, &samples, options.iso);
-    drop(samples);
     let near = block.cells(lattice, 1);
-    if !chain::is_complete(&bricks, &found, near, known) {
-        return Err(MeshError::Reach { reach });
+    // As few cells as there can be, unless a chain of flips leads through them; rows may reach farther.
+    let tries = if reach > LatticeBlock::REACH { &[reach][..] } else { &[NEAR, reach] };
+    let mut found = None;
+    for known in tries.iter().map(|&more| block.cells(lattice, more)) {
+        let window = Some(SampleWindow::of_cells(known));
+        let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
+        let looked = crossing::look(&bricks, &samples, options.iso);
+        if chain::is_complete(&bricks, &looked, near, known) {
+            found = Some(looked);
+            break;
+        }
     }
+    let Some(mut found) = found else { return Err(MeshError::Reach { reach }) };
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     keep(&bricks, &mut found, near);
     let mut crossings = found.numbered(&bricks, flipped);

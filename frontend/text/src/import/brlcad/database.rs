@@ -241,7 +241,7 @@ impl Properties {
 
     /// The constants of the solids below. Numbers count for regions alone.
     pub(super) fn constants(&self) -> impl Iterator<Item = (&'static str, LeafConstant)> {
-        let fits = |number: &i64| number.abs() <= LARGEST_CONSTANT;
+        let fits = |number: &i64| number.unsigned_abs() <= LARGEST_CONSTANT.unsigned_abs();
         let numbers = [
             ("region_id", self.region),
             ("aircode", self.aircode.filter(|&code| code != 0)),
