@@ -236,9 +236,11 @@ impl Selection {
         let counts = counts(masks);
         let starts = self.words.len() - self.len();
         for (part, &count) in parts.iter_mut().zip(&counts) {
-            part.clear(&self.extent);
             // A start for each row that stays is the most, and all that there are is the most.
-            part.words.reserve_exact(count + starts.min(count + self.present.len() + 1));
+            part.words.clear();
+            part.words.reserve_exact(1 + count + starts.min(count + self.present.len() + 1));
+            part.clear(&self.extent);
+            part.present.reserve_exact(self.present.len());
         }
         // Where the masks of each table that is present begin.
         let mut firsts = vec![0; self.spans.len()];

@@ -31,6 +31,7 @@ pub(crate) mod program;
 mod ranges;
 mod root;
 mod rule;
+mod sharing;
 mod survey;
 mod tree;
 mod winners;
@@ -55,6 +56,7 @@ use cull::Boxes;
 use decide::Alone;
 use program::RangeProgram;
 use ranges::{ProbeRanges, Ranges};
+use sharing::{PartSelection, Sharing};
 
 /// A box, and the rows of a model that run in it, for each table. A [`Pruner`] makes it
 /// ([`Divisible::region`]). Every evaluator of the model takes a region
@@ -81,10 +83,23 @@ impl Region {
     /// Appends the regions of the parts in `boxes`: `masks` has a byte for each row that runs, with a bit for
     /// each part in which the row matters.
     fn narrow_by(&self, boxes: &[Box3], mut masks: Vec<u8>, parts: &mut Vec<Self>) {
+        // Parts in which the same rows matter share a selection: of small boxes, as bricks are, most do.
+        let sharing = Sharing::of(&masks, boxes.len());
         let mut selections: [Selection; MAX_PARTS] = Default::default();
-        self.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
-        let regions = boxes.iter().zip(selections);
-        parts.extend(regions.map(|(&bounds, selection)| Self { bounds, selection: Arc::new(selection) }));
+        if sharing.own > 0 {
+            sharing.gather(&mut masks);
+            self.selection.narrow(&mut masks, &mut selections[..sharing.own]);
+        }
+        let mut own = selections.into_iter();
+        let first = parts.len();
+        for (&bounds, of) in boxes.iter().zip(sharing.parts) {
+            let selection = match of {
+                PartSelection::Whole => Arc::clone(&self.selection),
+                PartSelection::Part(part) => Arc::clone(&parts[first + part].selection),
+                PartSelection::Own => Arc::new(own.next().unwrap_or_default()),
+            };
+            parts.push(Self { bounds, selection });
+        }
     }
 
     /// The number of rows that run, over all tables.

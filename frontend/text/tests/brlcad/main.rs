@@ -283,7 +283,7 @@ fn circles_are_errors_with_their_path() {
 
 #[test]
 fn text_of_both_versions_says_the_same() {
-    let five = "title {of cups}\nunits in\n# a comment; {\n\
+    let five = "# by hand {\n\ntitle {of cups}\nunits in\n# a comment; {\n\
         put {a} ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\n\
         put {pin} part V {0 0 0} H {0 0 2} r_v 0.5 r_h 0.25; put {eight} arbn N 6 P0 {1 0 0 1} P1 {-1 0 0 1} \
         P2 {0 1 0 1} P3 {0 -1 0 1} P4 {0 0 1 1} P5 {0 0 -1 1}\n\

@@ -34,6 +34,7 @@ use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::model::Model;
 
 use self::database::Database;
+use self::tcl::Words;
 use super::Imported;
 use super::format::SceneFormatRow;
 use crate::Options;
@@ -59,18 +60,29 @@ impl DatabaseKind {
     fn of(bytes: &[u8]) -> Option<Self> {
         let words =
             || bytes.split(|byte| byte.is_ascii_whitespace() || *byte == 0).filter(|word| !word.is_empty());
-        let first = words().next()?;
-        match first {
+        match words().next()? {
             _ if bytes.starts_with(&binary::HEADER) => Some(Self::Binary),
             lines::FIRST_WORD if words().nth(2).is_some_and(|word| word.starts_with(b"v")) => {
                 Some(Self::OldText)
             }
-            b"title" | b"units" | b"put" | b"attr" => Some(Self::Text),
+            _ if first_command(bytes).is_some_and(is_known) => Some(Self::Text),
             // A version 4 record: the letter, a unit, and the version.
             _ if bytes.first() == Some(&b'I') && bytes.get(2..4) == Some(b"v4") => Some(Self::OldBinary),
             _ => None,
         }
     }
+}
+
+/// Whether a text of version 5 may begin with a command.
+fn is_known(command: &[u8]) -> bool {
+    matches!(command, b"title" | b"units" | b"put" | b"attr" | b"color")
+}
+
+/// The first word of a text after its comments.
+fn first_command(bytes: &[u8]) -> Option<&[u8]> {
+    let mut words = Words::commands(bytes);
+    let word = if words.next_command() { words.next().ok()?? } else { return None };
+    bytes.get(word.start as usize..word.end as usize)
 }
 
 /// The model of a BRL-CAD database (`.g` of version 5, `.asc` of versions 4 and 5): of the object that

@@ -20,7 +20,7 @@
 //!          edges of the solid along lattice planes have a side                                   (probe)
 //! leaning  where the field jumps, normals by crossings beside them                              (leaning)
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
-//! place    in the cell, or up to half a cell beyond: an edge may poke through a side of its cell
+//! place    in the cell, or a little beyond: an edge may poke through a side of its cell
 //!          and have no point in it                                                               (place)
 //! keep     if the field is nearer to the iso-value than at the mean; at a jump, if the surface is there
 //! sides    for each signature: the mean normal, the mean attributes, and the crossings

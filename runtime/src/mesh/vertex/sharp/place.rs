@@ -3,8 +3,8 @@
 //! ```text
 //!     +-------+-------+
 //!     |   .   |       |     The tip pokes through one side of an edge of the lattice, and no corner of the
-//!     |  / \  |       |     upper cell is inside. So the vertex of the cell below goes up to half a cell
-//!     +-x---x-+-------+     beyond its cell. Vertices of cells along an edge of the surface keep their order
+//!     |  / \  |       |     upper cell is inside. So the vertex of the cell below goes a little beyond
+//!     +-x---x-+-------+     its cell. Vertices of cells along an edge of the surface keep their order
 //!     |/     \|       |     there, each at the point that is nearest to its mean. A corner has one vertex:
 //!     +-------+-------+     of the cell that it is in, or, if no surface goes through that by its signs, of
 //!                           the one whose face is nearest. Others are on an edge.
@@ -80,12 +80,16 @@ pub(super) fn place<F: Field>(
     Ok(Some(region))
 }
 
-/// A cell and half a cell around it, as far as the lattice goes.
+/// How far a vertex may go beyond its cell, in cells. Found by trial: of the triangles of 24 turned cubes 58 are
+/// folded without edges, 32 with 0.5, and 29 with 0.6 to 1.
+const BEYOND: f32 = 0.6;
+
+/// A cell and what is around it, as far as the lattice goes.
 fn beside(axes: &[Vec<f32>; 3], Box3 { low, high }: Box3) -> Box3 {
     let sides = [0, 1, 2].map(|axis| {
-        let half = 0.5 * high[axis] - 0.5 * low[axis];
+        let more = BEYOND * high[axis] - BEYOND * low[axis];
         let [first, last] = room([axes[axis][0], axes[axis][axes[axis].len() - 1]]);
-        [(low[axis] - half).max(first), (high[axis] + half).min(last)]
+        [(low[axis] - more).max(first), (high[axis] + more).min(last)]
     });
     Box3::new(sides.map(|side| side[0]), sides.map(|side| side[1]))
 }
