@@ -85,7 +85,6 @@ pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Na
             Some(AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_)) => {
                 unreachable!("it is computed")
             }
-            Some(AttributeValue::Constant(_)) => unreachable!("nothing is bound to constants"),
         });
     })
 }

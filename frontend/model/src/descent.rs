@@ -111,6 +111,7 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                         let way = question.given(way, name, value, p);
                         tasks.push(child(0, p, &way));
                     }
+                    NodeKind::Constant { .. } => tasks.push(child(0, p, &way)),
                 }
             }
             DescentTask::Enter(id, p, way) => {
@@ -137,7 +138,8 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                     | NodeKind::Select(_)
                     | NodeKind::Affine(_)
                     | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. } => unreachable!("these answer at once"),
+                    | NodeKind::Attribute { .. }
+                    | NodeKind::Constant { .. } => unreachable!("these answer at once"),
                 });
             }
         }

@@ -49,10 +49,18 @@ pub enum NodeKind {
     Warp(Warp),
     /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
     Attribute {
-        /// The attribute group, or the name of the constant.
+        /// The attribute group.
         name: Arc<str>,
         /// What they have.
         value: AttributeValue,
+    },
+    /// The leaves below are of this, unless another constant of the same name stands nearer to them. Programs
+    /// know nothing of it.
+    Constant {
+        /// What is told of them.
+        name: Arc<str>,
+        /// What it is.
+        value: LeafConstant,
     },
 }
 
@@ -70,7 +78,8 @@ impl NodeKind {
             | Self::Select(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => Self::origin(),
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => Self::origin(),
         }
     }
 
@@ -84,7 +93,7 @@ impl NodeKind {
     #[must_use]
     pub fn constant(&self) -> Option<(&str, &LeafConstant)> {
         match self {
-            Self::Attribute { name, value: AttributeValue::Constant(value) } => Some((name, value)),
+            Self::Constant { name, value } => Some((name, value)),
             Self::Primitive(_)
             | Self::Particles(_)
             | Self::Combine(_)
@@ -93,6 +102,16 @@ impl NodeKind {
             | Self::Affine(_)
             | Self::Warp(_)
             | Self::Attribute { .. } => None,
+        }
+    }
+
+    /// Whether it gives leaves the same thing as another node: the attribute of one group, or the constant of
+    /// one name.
+    pub(crate) fn binds_what(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Attribute { name, .. }, Self::Attribute { name: other, .. })
+            | (Self::Constant { name, .. }, Self::Constant { name: other, .. }) => name == other,
+            _ => false,
         }
     }
 
@@ -107,7 +126,8 @@ impl NodeKind {
             | Self::Expression(_)
             | Self::Select(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -128,7 +148,8 @@ impl NodeKind {
             | Self::Expression(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => 0..count,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => 0..count,
         }
     }
 }

@@ -59,7 +59,8 @@ impl Owner {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => path + word(node),
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => path + word(node),
         }
     }
 
@@ -115,7 +116,7 @@ fn word(node: &CheckedNode) -> &str {
         NodeKind::Combine(combinator) => combinator.name(),
         NodeKind::Affine(_) => "affine",
         NodeKind::Warp(warp) => warp.name(),
-        NodeKind::Attribute { name, .. } => name,
+        NodeKind::Attribute { name, .. } | NodeKind::Constant { name, .. } => name,
         NodeKind::Select(_) => "select",
         NodeKind::Expression(_) => "expression",
     }

@@ -107,9 +107,6 @@ impl Question for SampleQuestion<'_> {
 
     fn given(&self, way: Way, name: &str, value: &AttributeValue, p: DVec3) -> Way {
         // Nearer to the leaves than whatever was said above: it replaces it.
-        if matches!(value, AttributeValue::Constant(_)) {
-            return way;
-        }
         let mut way = way.to_vec();
         for (group, above) in self.tree.attributes().iter().zip(&mut way) {
             if *group.name == *name {
@@ -177,7 +174,6 @@ fn given(value: &AttributeValue, p: DVec3) -> Given {
         AttributeValue::Expressed(expression) => {
             Given::Value(expression.values(p), expression.kink_distance(p, &[]))
         }
-        AttributeValue::Constant(_) => unreachable!("constants are of no group"),
     }
 }
 

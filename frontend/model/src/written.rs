@@ -22,6 +22,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 
 use crate::combine::CombinatorKind;
+use crate::constant::LeafConstant;
 use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
 use crate::field::{FieldKind, FieldValue};
@@ -113,6 +114,13 @@ pub enum Written {
         /// What they have.
         value: WrittenAttribute,
     },
+    /// A constant of the leaves below.
+    Constant {
+        /// What is told of them.
+        name: Arc<str>,
+        /// What it is.
+        value: LeafConstant,
+    },
 }
 
 impl Radius {
@@ -142,7 +150,8 @@ impl Written {
             | Self::Select(_)
             | Self::Map { .. }
             | Self::Warp { .. }
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -156,7 +165,7 @@ impl Written {
             Self::Particles(particles) => (&[], &[], particles.own_numbers()),
             Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
-            Self::Attribute { .. } => (&[], &[], [None; 2]),
+            Self::Attribute { .. } | Self::Constant { .. } => (&[], &[], [None; 2]),
             Self::Combine { fields, .. } | Self::Map { fields, .. } | Self::Warp { fields, .. } => {
                 (fields, &[], [None; 2])
             }
@@ -181,6 +190,7 @@ impl Written {
                 fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect()
             }
             Self::Attribute { value, .. } => value.numbers_mut(),
+            Self::Constant { .. } => Vec::new(),
         }
     }
 
@@ -205,7 +215,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => false,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => false,
         }
     }
 
@@ -260,6 +271,9 @@ impl Written {
             Self::Attribute { name, value } => {
                 NodeKind::Attribute { name: Arc::clone(name), value: value.value() }
             }
+            Self::Constant { name, value } => {
+                NodeKind::Constant { name: Arc::clone(name), value: value.clone() }
+            }
         })
     }
 
@@ -293,7 +307,8 @@ impl Written {
             | Self::Select(_)
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => Freedom::Fixed,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => Freedom::Fixed,
         }
     }
 
@@ -341,7 +356,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -356,7 +372,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         };
         strength.is_some_and(Number::depends_on_parameters)
     }
@@ -377,7 +394,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => {}
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => {}
         }
         self
     }
@@ -393,7 +411,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => {}
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => {}
         }
         self
     }

@@ -13,7 +13,7 @@ use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::parameter::Fixture;
 use jbt_model::word::normalized;
-use jbt_model::written::{Written, WrittenAttribute};
+use jbt_model::written::Written;
 
 impl<'a> Parser<'a> {
     /// A constant whose word, `start`, has just been taken.
@@ -24,8 +24,7 @@ impl<'a> Parser<'a> {
         };
         self.next();
         let value = self.constant_value();
-        let value = value.map(WrittenAttribute::Constant);
-        self.unary(start, value.map(|value| Written::Attribute { name: normalized(name).into(), value }))
+        self.unary(start, value.map(|value| Written::Constant { name: normalized(name).into(), value }))
     }
 
     /// Text in quotes, or a whole number; nothing after an error.

@@ -275,7 +275,8 @@ impl Printer {
             Written::Map { .. }
             | Written::Warp { .. }
             | Written::FormulaWarp(_)
-            | Written::Attribute { .. } => {
+            | Written::Attribute { .. }
+            | Written::Constant { .. } => {
                 let weighted = children.len() > 1;
                 let _ = if weighted { write!(out, " {WEIGHTED} {{ ") } else { write!(out, " {{ ") };
                 stack.push(Item::Text(" }"));
@@ -361,6 +362,9 @@ pub(super) fn head(out: &mut String, written: &Written, definitions: &str) {
         }
         Written::FormulaWarp(formula) => formula_warp(out, formula, definitions),
         Written::Attribute { name, value } => attribute(out, name, value, definitions),
+        Written::Constant { name, value } => {
+            let _ = write!(out, "{CONSTANT} {name} {value}");
+        }
     }
 }
 
@@ -388,9 +392,9 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
 }
 
 fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    let is_constant = matches!(value, WrittenAttribute::Constant(_));
-    let before = if is_constant { Some(CONSTANT) } else { is_reserved(name).then_some(GROUP_NODE) };
-    let _ = before.map_or(Ok(()), |word| write!(out, "{word} "));
+    if is_reserved(name) {
+        let _ = write!(out, "{GROUP_NODE} ");
+    }
     out.push_str(name);
     match value {
         WrittenAttribute::Numbers(numbers) => {
@@ -408,9 +412,6 @@ fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions
             out.push_str(" }");
         }
         WrittenAttribute::Uv(map) => uv(out, map),
-        WrittenAttribute::Constant(value) => {
-            let _ = write!(out, " {value}");
-        }
         WrittenAttribute::Expressed(formula) => {
             out.push(' ');
             expression(out, formula, |place| format!("n{place}"), definitions);

@@ -105,8 +105,6 @@ mod values {
         Textured(_) => textured(),
         Uv(_) => uv(),
         Expressed(_) => expressed(),
-        Constant(_) => vec![row("a constant, which no program knows", "constant color \"red\" { color (0 1 0) { constant part 17 { point { radius 1 } } } }", &[([0.0; 3], 1.0)])
-            .attribute("color", [0.5, 0.0, 0.0], &[0.0, 1.0, 0.0])],
     } }
 
     fn found(_: &Model, tree: &CheckedTree) -> Vec<&'static str> {

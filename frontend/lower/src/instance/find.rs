@@ -13,7 +13,6 @@ use crate::computed::share;
 use crate::demand::Demand;
 use crate::names::ComputedId;
 use crate::position::{Position, PositionKey, Trails, position_key};
-use jbt_model::attribute::AttributeValue;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, Extreme, OperatorForm, ReduceCode, Union};
 use jbt_model::expression::Expression;
@@ -162,7 +161,7 @@ impl<'a> Finder<'a> {
                     moved = Some(Position { space, map: map * *inner, trail });
                 }
                 // Programs know no constants.
-                NodeKind::Attribute { value: AttributeValue::Constant(_), .. } => {}
+                NodeKind::Constant { .. } => {}
                 NodeKind::Attribute { name, value } => {
                     let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {
@@ -261,7 +260,9 @@ impl<'a> Finder<'a> {
                 self.selects = true;
                 InstanceKind::Select { children: frame.children, chosen: chosen(*which) }
             }
-            NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
+            NodeKind::Affine(_) | NodeKind::Attribute { .. } | NodeKind::Constant { .. } => {
+                unreachable!("resolve walks through these")
+            }
         };
         self.push(node, position, kind)
     }

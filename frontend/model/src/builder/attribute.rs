@@ -26,7 +26,7 @@ impl Tree {
     /// material or the number of a part. The [owner](crate::owner::Owner::constants) of a point answers it.
     #[must_use]
     pub fn constant(&self, name: &str, value: impl Into<LeafConstant>) -> Self {
-        self.given(name, WrittenAttribute::Constant(value.into()))
+        Self::new(Written::Constant { name: name.into(), value: value.into() }, vec![self.clone()])
     }
 
     /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in

@@ -101,7 +101,8 @@ impl Tree {
             | Written::Map { .. }
             | Written::Warp { .. }
             | Written::FormulaWarp(_)
-            | Written::Attribute { .. } => None,
+            | Written::Attribute { .. }
+            | Written::Constant { .. } => None,
         })
     }
 }

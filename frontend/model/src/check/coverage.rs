@@ -89,7 +89,7 @@ impl CheckedTree {
 
 /// Whether it is an attribute node of the group.
 fn gives(kind: &NodeKind, group: &str) -> bool {
-    matches!(kind, NodeKind::Attribute { name, .. } if &**name == group) && kind.constant().is_none()
+    matches!(kind, NodeKind::Attribute { name, .. } if &**name == group)
 }
 
 /// The same kind; particles with values of the group have values of its coverage as well.

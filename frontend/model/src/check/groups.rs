@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
-use super::constants::check_constant;
 use super::fields::{check_expressed, check_fields};
 use super::numbers::check_numbers;
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
@@ -99,7 +98,7 @@ pub(super) fn another_width(span: Option<Span>, name: &str, width: usize, found:
     Diagnostic::error(span, message).expected(format!("expected {width} real{plural}"))
 }
 
-/// An attribute node: its group exists, and its value fits the group. Constants are of no group.
+/// An attribute node: its group exists, and its value fits the group.
 pub(super) fn check_attribute(
     report: &mut Report,
     span: Option<Span>,
@@ -107,9 +106,6 @@ pub(super) fn check_attribute(
     value: &AttributeValue,
     groups: &BTreeMap<&str, usize>,
 ) {
-    if let AttributeValue::Constant(value) = value {
-        return check_constant(report, span, (name, value), groups);
-    }
     let Some(width) = known_width(report, span, name, groups) else { return };
     let mut fits = |numbers: &[f64]| {
         if numbers.len() != width {
@@ -119,7 +115,6 @@ pub(super) fn check_attribute(
     };
     match value {
         AttributeValue::Numbers(numbers) => fits(numbers),
-        AttributeValue::Constant(_) => {}
         AttributeValue::Textured(Textured { texture, a, b }) => {
             fits(a);
             fits(b);

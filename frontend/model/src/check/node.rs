@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DAffine3, DMat3};
 use jbt_ir::limits;
 
+use super::constants::check_constant;
 use super::fields::{check_expressed, check_falloff, check_fields};
 use super::groups::check_attribute;
 use super::numbers::{check_choice, check_formula, check_number, check_numbers};
@@ -76,6 +77,10 @@ pub(super) fn check_node(
             check_attribute(report, span, name, value, groups);
             (count == 1, "one child")
         }
+        NodeKind::Constant { name, value } => {
+            check_constant(report, span, (name, value), groups);
+            (count == 1, "one child")
+        }
     };
     if let (false, expected) = fits {
         let message = format!("{} has {count} children", describe(kind));
@@ -93,8 +98,8 @@ fn describe(kind: &NodeKind) -> String {
         NodeKind::Expression(_) => "a node `expression`".to_owned(),
         NodeKind::Affine(_) => "an affine map".to_owned(),
         NodeKind::Warp(warp) => format!("a {}", warp.name()),
-        NodeKind::Attribute { name, .. } if kind.constant().is_some() => format!("the constant `{name}`"),
         NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
+        NodeKind::Constant { name, .. } => format!("the constant `{name}`"),
     }
 }
 

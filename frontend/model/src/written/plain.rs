@@ -20,6 +20,7 @@ impl From<NodeKind> for Written {
             NodeKind::Affine(map) => map.into(),
             NodeKind::Warp(warp) => warp.into(),
             NodeKind::Attribute { name, value } => Self::Attribute { name, value: (&value).into() },
+            NodeKind::Constant { name, value } => Self::Constant { name, value },
         }
     }
 }

@@ -83,6 +83,12 @@ impl RustBody {
                 let text = self.attribute(name, value);
                 format!("{}.{text}", child.text)
             }
+            Written::Constant { name, value: LeafConstant::Whole(number) } => {
+                format!("{}.constant({name:?}, {number}_i64)", child.text)
+            }
+            Written::Constant { name, value: LeafConstant::Text(text) } => {
+                format!("{}.constant({name:?}, {text:?})", child.text)
+            }
         }
     }
 
@@ -169,10 +175,6 @@ impl RustBody {
                 let values = list(self.formula(formula, &|_| "Tree::empty()".to_owned()));
                 format!("expressed({name:?}, {values})")
             }
-            WrittenAttribute::Constant(LeafConstant::Whole(number)) => {
-                format!("constant({name:?}, {number}_i64)")
-            }
-            WrittenAttribute::Constant(LeafConstant::Text(text)) => format!("constant({name:?}, {text:?})"),
         }
     }
 
@@ -228,6 +230,7 @@ pub(super) fn is_operator(tree: &Tree) -> bool {
         | Written::Map { .. }
         | Written::Warp { .. }
         | Written::FormulaWarp(_)
-        | Written::Attribute { .. } => false,
+        | Written::Attribute { .. }
+        | Written::Constant { .. } => false,
     }
 }

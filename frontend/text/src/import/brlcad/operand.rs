@@ -11,7 +11,6 @@
 
 use std::collections::VecDeque;
 
-use jbt_model::attribute::AttributeValue;
 use jbt_model::bounds::Bounds;
 use jbt_model::combine::{Combinator, Complement};
 use jbt_model::constant::LeafConstant;
@@ -282,6 +281,6 @@ pub(super) fn colored(tree: Tree, color: [u8; 3], span: Span) -> Tree {
 
 /// A part whose leaves have a constant.
 pub(super) fn with_constant(part: SetPart, (name, value): (&str, LeafConstant), span: Span) -> SetPart {
-    let kind = NodeKind::Attribute { name: name.into(), value: AttributeValue::Constant(value) };
+    let kind = NodeKind::Constant { name: name.into(), value };
     SetPart { tree: Tree::at(span, kind, vec![part.tree]), ..part }
 }
