@@ -165,7 +165,7 @@ impl Compact {
                 tasks.push(Task::Push(Operator::Warp(Warped { warp, map })));
             }
             NodeKind::Constant { .. } => tasks.push(Task::Write(node.children[0], map, values)),
-            NodeKind::Attribute { name, value } => {
+            NodeKind::Attribute { name, value, .. } => {
                 // Numbers are all that it knows: where they are computed, the check against the oracle says
                 // that it is off.
                 let here: &[f64] = match value {

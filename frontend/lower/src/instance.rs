@@ -335,6 +335,11 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// Whether what leaves are bound to counts whatever stands nearer to them.
+    pub(super) fn overrides(&self, bound: Bound) -> bool {
+        self.tree.node(bound.node).kind.overrides()
+    }
+
     /// The attribute group that a node names.
     pub(super) fn attribute_name(&self, node: NodeId) -> &'a str {
         match &self.tree.node(node).kind {

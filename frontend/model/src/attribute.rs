@@ -32,6 +32,16 @@ impl Mixing {
     }
 }
 
+/// Which of several values of one name above a leaf counts.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Precedence {
+    /// The one that is nearest to the leaf, unless one above overrides it.
+    #[default]
+    Nearest,
+    /// This one, whatever stands below; of several that override, the one that is nearest to the root.
+    Override,
+}
+
 /// A group of 1 to [`MAX_ATTRIBUTE_WIDTH`](jbt_ir::limits::MAX_ATTRIBUTE_WIDTH) reals with a name.
 #[derive(Clone, PartialEq, Debug)]
 pub struct AttributeGroup {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use crate::attribute::AttributeValue;
+use crate::attribute::{AttributeValue, Precedence};
 use crate::combine::Combinator;
 use crate::constant::LeafConstant;
 use crate::expression::Expression;
@@ -47,20 +47,24 @@ pub enum NodeKind {
     /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see
     /// [`warp`](crate::warp).
     Warp(Warp),
-    /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
+    /// The leaves below have this attribute, unless another node of the same name counts for them.
     Attribute {
         /// The attribute group.
         name: Arc<str>,
         /// What they have.
         value: AttributeValue,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
-    /// The leaves below are of this, unless another constant of the same name stands nearer to them. Programs
-    /// know nothing of it.
+    /// The leaves below are of this, unless another constant of the same name counts for them. Programs know
+    /// nothing of it.
     Constant {
         /// What is told of them.
         name: Arc<str>,
         /// What it is.
         value: LeafConstant,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
 }
 
@@ -93,7 +97,7 @@ impl NodeKind {
     #[must_use]
     pub fn constant(&self) -> Option<(&str, &LeafConstant)> {
         match self {
-            Self::Constant { name, value } => Some((name, value)),
+            Self::Constant { name, value, .. } => Some((name, value)),
             Self::Primitive(_)
             | Self::Particles(_)
             | Self::Combine(_)
@@ -102,6 +106,23 @@ impl NodeKind {
             | Self::Affine(_)
             | Self::Warp(_)
             | Self::Attribute { .. } => None,
+        }
+    }
+
+    /// Whether it gives leaves something that no node below changes.
+    #[must_use]
+    pub fn overrides(&self) -> bool {
+        match self {
+            Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } => {
+                *precedence == Precedence::Override
+            }
+            Self::Primitive(_)
+            | Self::Particles(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Affine(_)
+            | Self::Warp(_) => false,
         }
     }
 

@@ -51,8 +51,8 @@ impl TourStep {
         self.state.warp
     }
 
-    /// The attribute nodes and constants above that hold here: of each name the nearest one, in the order of
-    /// the nodes that first gave the names.
+    /// The attribute nodes and constants above that hold here: of each name the nearest one, unless one
+    /// overrides it, in the order of the nodes that first gave the names.
     #[must_use]
     pub fn bound(&self) -> &[NodeId] {
         &self.state.bound
@@ -99,6 +99,7 @@ impl Tour<'_> {
                 let mut state = TourState::clone(&step.state);
                 let is_replaced = |&bound: &NodeId| self.tree.node(bound).kind.binds_what(&node.kind);
                 match state.bound.iter().position(is_replaced) {
+                    Some(place) if self.tree.node(state.bound[place]).kind.overrides() => {}
                     Some(place) => state.bound[place] = step.node,
                     None => state.bound.push(step.node),
                 }

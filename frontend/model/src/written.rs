@@ -21,6 +21,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
+use crate::attribute::Precedence;
 use crate::combine::CombinatorKind;
 use crate::constant::LeafConstant;
 use crate::diagnostic::Diagnostic;
@@ -113,6 +114,8 @@ pub enum Written {
         name: Arc<str>,
         /// What they have.
         value: WrittenAttribute,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
     /// A constant of the leaves below.
     Constant {
@@ -120,6 +123,8 @@ pub enum Written {
         name: Arc<str>,
         /// What it is.
         value: LeafConstant,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
 }
 
@@ -268,11 +273,11 @@ impl Written {
             Self::Map { .. } => NodeKind::Affine(self.map()?),
             Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
             Self::FormulaWarp(formula) => NodeKind::Warp(FormulaWarp::from(formula).into()),
-            Self::Attribute { name, value } => {
-                NodeKind::Attribute { name: Arc::clone(name), value: value.value() }
+            Self::Attribute { name, value, precedence } => {
+                NodeKind::Attribute { name: Arc::clone(name), value: value.value(), precedence: *precedence }
             }
-            Self::Constant { name, value } => {
-                NodeKind::Constant { name: Arc::clone(name), value: value.clone() }
+            Self::Constant { name, value, precedence } => {
+                NodeKind::Constant { name: Arc::clone(name), value: value.clone(), precedence: *precedence }
             }
         })
     }
@@ -396,6 +401,15 @@ impl Written {
             | Self::FormulaWarp(_)
             | Self::Attribute { .. }
             | Self::Constant { .. } => {}
+        }
+        self
+    }
+
+    /// The same, which nothing below changes, if it is an attribute or a constant.
+    #[must_use]
+    pub fn overriding(mut self) -> Self {
+        if let Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } = &mut self {
+            *precedence = Precedence::Override;
         }
         self
     }

@@ -162,9 +162,13 @@ impl<'a> Finder<'a> {
                 }
                 // Programs know no constants.
                 NodeKind::Constant { .. } => {}
-                NodeKind::Attribute { name, value } => {
+                NodeKind::Attribute { name, value, .. } => {
                     let groups = self.scene.tree.attributes();
-                    if let Some(group) = groups.iter().position(|group| group.name == *name) {
+                    let group = groups.iter().position(|group| group.name == *name);
+                    let above = if rebound { &self.bound[..] } else { self.scene.bindings(bindings) };
+                    let stays =
+                        |group: &usize| above[*group].is_some_and(|bound| self.scene.overrides(bound));
+                    if let Some(group) = group.filter(|group| !stays(group)) {
                         let placed = value.is_placed();
                         let place = || moved.unwrap_or_else(|| *self.scene.position(position));
                         let at = placed.then(place).map(|place| self.name_position(place));

@@ -110,8 +110,11 @@ impl<'a> ConstantSearch<'a> {
     fn own_and_below(&self, id: NodeId) -> impl DoubleEndedIterator<Item = ValuesBelow<'a>> {
         let CheckedNode { kind, children, .. } = self.tree.node(id);
         let own = kind.constant().filter(|(found, _)| *found == self.name);
-        let own = own.filter(|_| self.bare[children[0].0 as usize]).map(|(_, value)| ValuesBelow::One(value));
-        own.into_iter().chain(heard(kind, children).iter().map(|child| self.values[child.0 as usize]))
+        let overrides = own.is_some() && kind.overrides();
+        let own = own.filter(|_| overrides || self.bare[children[0].0 as usize]);
+        let own = own.map(|(_, value)| ValuesBelow::One(value));
+        let children = if overrides { &[] } else { heard(kind, children) };
+        own.into_iter().chain(children.iter().map(|child| self.values[child.0 as usize]))
     }
 
     /// The values that count for some leaf below a node: those with a bare leaf below them.

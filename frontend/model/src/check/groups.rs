@@ -11,7 +11,7 @@ use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::NodeKind;
 use crate::report::{Report, clip, nearest};
-use crate::word::is_identifier;
+use crate::word::{OVERRIDE, is_identifier};
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
 pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
@@ -96,6 +96,21 @@ pub(super) fn another_width(span: Option<Span>, name: &str, width: usize, found:
     let message = format!("the attribute `{name}` has width {width}, not {found}");
     let plural = if width == 1 { "" } else { "s" };
     Diagnostic::error(span, message).expected(format!("expected {width} real{plural}"))
+}
+
+/// What overrides is read as that, unless a group has the word's name.
+pub(super) fn check_override(
+    report: &mut Report,
+    span: Option<Span>,
+    kind: &NodeKind,
+    groups: &BTreeMap<&str, usize>,
+) {
+    if kind.overrides() && groups.contains_key(OVERRIDE) {
+        report.add(|| {
+            let message = format!("`{OVERRIDE}` beside an attribute of this name");
+            Diagnostic::error(span, message).expected("expected another name of the attribute")
+        });
+    }
 }
 
 /// An attribute node: its group exists, and its value fits the group.

@@ -1,5 +1,6 @@
 //! Nodes as Rust: constructors and methods of the builder.
 
+use jbt_model::attribute::Precedence;
 use jbt_model::combine::CombinatorKind;
 use jbt_model::constant::LeafConstant;
 use jbt_model::falloff::FalloffKind;
@@ -79,15 +80,16 @@ impl RustBody {
                 let values = list(self.formula(formula, &|_| nothing.text.clone()));
                 weighted(format!("{}.warp({values})", child.text), children)
             }
-            Written::Attribute { name, value } => {
+            Written::Attribute { name, value, precedence } => {
                 let text = self.attribute(name, value);
-                format!("{}.{text}", child.text)
+                format!("{}.{text}{}", child.text, overriding(*precedence))
             }
-            Written::Constant { name, value: LeafConstant::Whole(number) } => {
-                format!("{}.constant({name:?}, {number}_i64)", child.text)
-            }
-            Written::Constant { name, value: LeafConstant::Text(text) } => {
-                format!("{}.constant({name:?}, {text:?})", child.text)
+            Written::Constant { name, value, precedence } => {
+                let value = match value {
+                    LeafConstant::Whole(number) => format!("{number}_i64"),
+                    LeafConstant::Text(text) => format!("{text:?}"),
+                };
+                format!("{}.constant({name:?}, {value}){}", child.text, overriding(*precedence))
             }
         }
     }
@@ -197,6 +199,14 @@ impl RustBody {
             text.push_str(&format!(".values({name:?}, {width}, {})", array(numbers)));
         }
         text
+    }
+}
+
+/// What stands behind an attribute or a constant that overrides.
+const fn overriding(precedence: Precedence) -> &'static str {
+    match precedence {
+        Precedence::Nearest => "",
+        Precedence::Override => ".overriding()",
     }
 }
 
