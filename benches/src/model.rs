@@ -1,6 +1,7 @@
 //! Models and points that benches ask about.
 
 use jbt::internals::model::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
+use jbt::tree::Precedence;
 use jbt::tree::{NodeKind, Primitive};
 use jbt::{CheckedTree, Falloff, Model, Points, Tree, build, text};
 
@@ -76,7 +77,10 @@ pub fn leaf(blob: &Blob) -> Tree {
     };
     let leaf = Tree::new(NodeKind::Primitive(primitive), Vec::new());
     let values = blob.color.map(f64::from).to_vec();
-    Tree::new(NodeKind::Attribute { name: "color".into(), value: values.into() }, vec![leaf])
+    Tree::new(
+        NodeKind::Attribute { name: "color".into(), value: values.into(), precedence: Precedence::Nearest },
+        vec![leaf],
+    )
 }
 
 /// The sum of blobs as a BlobTree.

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use jbt::diagnostic::escape;
+use jbt::export::constant_json;
 use jbt::tree::Bounds;
 use jbt::tree::{ConstantValues, LeafConstant, NodeKind};
 use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Parameter, Query, Task};
@@ -124,7 +125,8 @@ impl Checked {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => 0,
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => 0,
         };
         self.tree.nodes().iter().map(|node| primitives(&node.kind)).sum()
     }
@@ -190,11 +192,7 @@ impl Checked {
 
 /// The values of the constants of leaves, by name.
 fn constants(tree: &CheckedTree) -> Map<String, Value> {
-    let value = |value: &LeafConstant| match value {
-        LeafConstant::Whole(number) => json!(number),
-        LeafConstant::Text(text) => json!(text),
-    };
-    let entry = |one: ConstantValues| (one.name, one.values.iter().map(value).collect());
+    let entry = |one: ConstantValues| (one.name, one.values.iter().map(constant_json).collect());
     tree.constants().into_iter().map(entry).collect()
 }
 

@@ -181,7 +181,8 @@ fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => None,
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => None,
     };
     let mut leaves: Vec<CountedLeaf> = tree.nodes().iter().enumerate().filter_map(leaf).collect();
     leaves.sort_by_key(|leaf| (leaf.place, leaf.node));

@@ -1,6 +1,6 @@
 //! Building models: what the functions of the package's `_members.py` and the methods of its `Model` call.
 
-use jbt::tree::{CombinatorKind, MapKind, SkeletonKind, WarpKind};
+use jbt::tree::{CombinatorKind, MapKind, Precedence, SkeletonKind, WarpKind};
 use jbt::{AttributeGroup, Mixing, Tree};
 use jbt_model::builder::Vector;
 use jbt_model::model::Model;
@@ -114,7 +114,11 @@ impl PyModel {
     fn attribute(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<Self> {
         let numbers = numbers(name, given)?;
         let declared = self.declared(name, numbers.len());
-        let written = Written::Attribute { name: name.into(), value: WrittenAttribute::Numbers(numbers) };
+        let written = Written::Attribute {
+            name: name.into(),
+            value: WrittenAttribute::Numbers(numbers),
+            precedence: Precedence::Nearest,
+        };
         Ok(declared.with_tree(Tree::new(written, vec![self.tree().clone()])))
     }
 
@@ -122,6 +126,17 @@ impl PyModel {
     fn constant(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<Self> {
         let value = constant_of(name, given)?;
         Ok(self.with_tree(self.tree().constant(name, value)))
+    }
+
+    /// The attribute or constant at the root counts whatever stands below.
+    fn overriding(&self) -> PyResult<Self> {
+        let node = self.tree().node();
+        match node.written() {
+            written @ (Written::Attribute { .. } | Written::Constant { .. }) => {
+                Ok(self.with_tree(Tree::new(written.clone().overriding(), node.children().to_vec())))
+            }
+            _ => Err(refused("an attribute or a constant can override, and nothing else".to_owned())),
+        }
     }
 
     /// Attributes by a pattern of two values.
@@ -136,7 +151,7 @@ impl PyModel {
         let (a, b) = (numbers("a", a)?, numbers("b", b)?);
         let declared = self.declared(name, a.len());
         let value = WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b });
-        let written = Written::Attribute { name: name.into(), value };
+        let written = Written::Attribute { name: name.into(), value, precedence: Precedence::Nearest };
         Ok(declared.with_tree(Tree::new(written, vec![self.tree().clone()])))
     }
 
@@ -152,7 +167,11 @@ impl PyModel {
             .map(|(name, [a, b])| [number_of(name, &a), number_of(name, &b)]);
         let map = WrittenUv { scale: [su?, sv?], degrees: number_of("degrees", degrees)?, shift: [u?, v?] };
         let declared = self.declared(name, 2);
-        let written = Written::Attribute { name: name.into(), value: WrittenAttribute::Uv(map) };
+        let written = Written::Attribute {
+            name: name.into(),
+            value: WrittenAttribute::Uv(map),
+            precedence: Precedence::Nearest,
+        };
         Ok(declared.with_tree(Tree::new(written, vec![self.tree().clone()])))
     }
 

@@ -196,6 +196,15 @@ def test_repr() -> None:
     assert repr(jbt.point(radius=-1)) == "<jbt.Model with errors>"
 
 
+def test_what_overrides_counts_whatever_stands_below() -> None:
+    pin = jbt.point(radius=1).constant("material", "brass").color((1, 0, 0))
+    over = pin.constant("material", "steel").overriding().color((0, 0, 1)).overriding()
+    assert over.owner([[0, 0, 0]]).constants == [{"material": "steel"}]
+    assert "override color (0 0 1) { override constant material" in str(over)
+    with pytest.raises(ValueError, match="can override, and nothing else"):
+        jbt.point(radius=1).overriding()
+
+
 def test_constants_are_answered_by_owners_and_written(tmp_path: Path) -> None:
     pin = jbt.point((3, 0, 0), radius=1).constant("material", "brass").constant("part", 17)
     model = (jbt.point(radius=1) | pin).constant("material", "steel")

@@ -36,7 +36,7 @@
 //! Values of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the
 //! structures in their variants are those of the compiler, in vectors of its own glam.
 
-pub use jbt_model::attribute::{AttributeValue, Textured, UvMap};
+pub use jbt_model::attribute::{AttributeValue, Precedence, Textured, UvMap};
 pub use jbt_model::bounds::Bounds;
 pub use jbt_model::check::{CheckedNode, DEFINED, FoundNode, OWNER};
 pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax, operators};

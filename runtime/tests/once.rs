@@ -94,7 +94,8 @@ fn instances(tree: &CheckedTree) -> u64 {
             NodeKind::Combine(_)
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
-            | NodeKind::Attribute { .. } => {}
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => {}
         }
         stack.extend(node.kind.asked(&node.children).iter().map(|&child| (child, warps.clone(), map)));
     }

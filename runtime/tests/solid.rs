@@ -433,7 +433,7 @@ fn owner_of(tree: &CheckedTree, id: NodeId, p: glam::DVec3) -> (f64, Option<(Nod
         }
         NodeKind::Affine(map) => owner_of(tree, node.children[0], map.inverse().transform_point3(p)),
         NodeKind::Warp(warp) => owner_of(tree, node.children[0], warp.inverse(p)),
-        NodeKind::Attribute { .. } => owner_of(tree, node.children[0], p),
+        NodeKind::Attribute { .. } | NodeKind::Constant { .. } => owner_of(tree, node.children[0], p),
         NodeKind::Expression(_) | NodeKind::Particles(_) => {
             unreachable!("no scene of these tests has formulas or particles")
         }

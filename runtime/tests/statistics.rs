@@ -134,7 +134,8 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
                 | NodeKind::Combine(_)
                 | NodeKind::Expression(_)
                 | NodeKind::Select(_)
-                | NodeKind::Attribute { .. },
+                | NodeKind::Attribute { .. }
+                | NodeKind::Constant { .. },
                 _,
             ) => {}
         }

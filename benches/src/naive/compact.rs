@@ -164,15 +164,13 @@ impl Compact {
                 tasks.push(Task::Write(node.children[0], DAffine3::IDENTITY, values));
                 tasks.push(Task::Push(Operator::Warp(Warped { warp, map })));
             }
-            NodeKind::Attribute { name, value } => {
+            NodeKind::Constant { .. } => tasks.push(Task::Write(node.children[0], map, values)),
+            NodeKind::Attribute { name, value, .. } => {
                 // Numbers are all that it knows: where they are computed, the check against the oracle says
                 // that it is off.
                 let here: &[f64] = match value {
                     AttributeValue::Numbers(numbers) => numbers,
-                    AttributeValue::Textured(_)
-                    | AttributeValue::Uv(_)
-                    | AttributeValue::Expressed(_)
-                    | AttributeValue::Constant(_) => &[],
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => &[],
                 };
                 let mut values = values.to_vec();
                 let mut start = 0;

@@ -72,20 +72,21 @@ pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Na
     let names = (0..group.width()).map(|index| group.channel(index));
     columns(names, move |scene, leaf, row| {
         let group = &scene.tree.attributes()[index];
-        if let Some((particles, place)) = leaf.one_of(scene)
+        let (bindings, _) = leaf.attributes(scene);
+        // What particles are bound to besides their own values overrides these.
+        if bindings[index].is_none()
+            && let Some((particles, place)) = leaf.one_of(scene)
             && let Some(values) = particles.values_of(&group.name)
         {
             row.extend(values.of(place));
             return;
         }
-        let (bindings, _) = leaf.attributes(scene);
         row.extend(match bindings[index].map(|bound| given(scene.tree, bound.node)) {
             None => &group.default,
             Some(AttributeValue::Numbers(numbers)) => numbers,
             Some(AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_)) => {
                 unreachable!("it is computed")
             }
-            Some(AttributeValue::Constant(_)) => unreachable!("nothing is bound to constants"),
         });
     })
 }

@@ -138,6 +138,7 @@ pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
         | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
+        | NodeKind::Constant { .. }
         | NodeKind::Warp(_) => unreachable!("bindings name attribute nodes"),
     }
 }

@@ -203,7 +203,8 @@ impl<'a> Scene<'a> {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => {
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => {
                 unreachable!("leaf fields without a run are made of primitives")
             }
         }
@@ -219,7 +220,8 @@ impl<'a> Scene<'a> {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => unreachable!("runs are made of particles"),
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => unreachable!("runs are made of particles"),
         }
     }
 
@@ -278,7 +280,8 @@ impl<'a> Scene<'a> {
             | NodeKind::Primitive(_)
             | NodeKind::Particles(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => {
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => {
                 unreachable!("only formulas have expressions")
             }
         }
@@ -325,10 +328,16 @@ impl<'a> Scene<'a> {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => {
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => {
                 unreachable!("operators are made of combinators")
             }
         }
+    }
+
+    /// Whether what leaves are bound to counts whatever stands nearer to them.
+    pub(super) fn overrides(&self, bound: Bound) -> bool {
+        self.tree.node(bound.node).kind.overrides()
     }
 
     /// The attribute group that a node names.
@@ -341,7 +350,8 @@ impl<'a> Scene<'a> {
             | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
-            | NodeKind::Warp(_) => unreachable!("bindings name attribute nodes"),
+            | NodeKind::Warp(_)
+            | NodeKind::Constant { .. } => unreachable!("bindings name attribute nodes"),
         }
     }
 
@@ -354,7 +364,8 @@ impl<'a> Scene<'a> {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Primitive(_)
-            | NodeKind::Attribute { .. } => {
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => {
                 unreachable!("spaces are the insides of warps")
             }
         }

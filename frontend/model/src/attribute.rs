@@ -6,7 +6,6 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::affine::sin_cos_degrees;
-use crate::constant::LeafConstant;
 use crate::expression::Expression;
 use crate::texture::Texture;
 
@@ -31,6 +30,16 @@ impl Mixing {
             Self::Dominant => "dominant",
         }
     }
+}
+
+/// Which of several values of one name above a leaf counts.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Precedence {
+    /// The one that is nearest to the leaf, unless one above overrides it.
+    #[default]
+    Nearest,
+    /// This one, whatever stands below; of several that override, the one that is nearest to the root.
+    Override,
 }
 
 /// A group of 1 to [`MAX_ATTRIBUTE_WIDTH`](jbt_ir::limits::MAX_ATTRIBUTE_WIDTH) reals with a name.
@@ -84,9 +93,6 @@ pub enum AttributeValue {
     /// A formula of the coordinates in the space of the node, with one value for each channel of the group.
     /// It asks for no fields, and has no box.
     Expressed(Expression),
-    /// What leaves are of, which belongs to no group: the name is that of the constant, and programs know
-    /// nothing of it.
-    Constant(LeafConstant),
 }
 
 impl AttributeValue {
@@ -94,7 +100,7 @@ impl AttributeValue {
     pub fn is_placed(&self) -> bool {
         match self {
             Self::Textured(_) | Self::Expressed(_) => true,
-            Self::Numbers(_) | Self::Uv(_) | Self::Constant(_) => false,
+            Self::Numbers(_) | Self::Uv(_) => false,
         }
     }
 }

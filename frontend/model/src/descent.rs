@@ -11,13 +11,21 @@
 
 use glam::DVec3;
 
-use crate::attribute::AttributeValue;
+use crate::attribute::{AttributeValue, Precedence};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive, chosen};
 use crate::particles::Particles;
 use crate::warp::Warp;
+
+/// An attribute node on the way down.
+#[derive(Clone, Copy)]
+pub(crate) struct GivenAttribute<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) value: &'a AttributeValue,
+    pub(crate) precedence: Precedence,
+}
 
 /// A question that has an answer at each node.
 pub(crate) trait Question {
@@ -35,7 +43,7 @@ pub(crate) trait Question {
     fn below(&self, way: &Self::Way, child: usize) -> Self::Way;
 
     /// The way below an attribute node, which is asked at `p`.
-    fn given(&self, way: Self::Way, name: &str, value: &AttributeValue, p: DVec3) -> Self::Way;
+    fn given(&self, way: Self::Way, node: GivenAttribute<'_>, p: DVec3) -> Self::Way;
 
     /// The answer of a leaf.
     fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Self::Way) -> Self::Answer;
@@ -107,10 +115,12 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                         tasks.push(DescentTask::Mark(question.mark(warp, p, None)));
                         tasks.push(child(0, warp.inverse(p), &way));
                     }
-                    NodeKind::Attribute { name, value } => {
-                        let way = question.given(way, name, value, p);
+                    NodeKind::Attribute { name, value, precedence } => {
+                        let node = GivenAttribute { name, value, precedence: *precedence };
+                        let way = question.given(way, node, p);
                         tasks.push(child(0, p, &way));
                     }
+                    NodeKind::Constant { .. } => tasks.push(child(0, p, &way)),
                 }
             }
             DescentTask::Enter(id, p, way) => {
@@ -137,7 +147,8 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                     | NodeKind::Select(_)
                     | NodeKind::Affine(_)
                     | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. } => unreachable!("these answer at once"),
+                    | NodeKind::Attribute { .. }
+                    | NodeKind::Constant { .. } => unreachable!("these answer at once"),
                 });
             }
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use crate::attribute::AttributeValue;
+use crate::attribute::{AttributeValue, Precedence};
 use crate::combine::Combinator;
 use crate::constant::LeafConstant;
 use crate::expression::Expression;
@@ -47,12 +47,24 @@ pub enum NodeKind {
     /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see
     /// [`warp`](crate::warp).
     Warp(Warp),
-    /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
+    /// The leaves below have this attribute, unless another node of the same name counts for them.
     Attribute {
-        /// The attribute group, or the name of the constant.
+        /// The attribute group.
         name: Arc<str>,
         /// What they have.
         value: AttributeValue,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
+    },
+    /// The leaves below are of this, unless another constant of the same name counts for them. Programs know
+    /// nothing of it.
+    Constant {
+        /// What is told of them.
+        name: Arc<str>,
+        /// What it is.
+        value: LeafConstant,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
 }
 
@@ -70,7 +82,8 @@ impl NodeKind {
             | Self::Select(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => Self::origin(),
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => Self::origin(),
         }
     }
 
@@ -84,7 +97,7 @@ impl NodeKind {
     #[must_use]
     pub fn constant(&self) -> Option<(&str, &LeafConstant)> {
         match self {
-            Self::Attribute { name, value: AttributeValue::Constant(value) } => Some((name, value)),
+            Self::Constant { name, value, .. } => Some((name, value)),
             Self::Primitive(_)
             | Self::Particles(_)
             | Self::Combine(_)
@@ -93,6 +106,33 @@ impl NodeKind {
             | Self::Affine(_)
             | Self::Warp(_)
             | Self::Attribute { .. } => None,
+        }
+    }
+
+    /// Whether it gives leaves something that no node below changes.
+    #[must_use]
+    pub fn overrides(&self) -> bool {
+        match self {
+            Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } => {
+                *precedence == Precedence::Override
+            }
+            Self::Primitive(_)
+            | Self::Particles(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Affine(_)
+            | Self::Warp(_) => false,
+        }
+    }
+
+    /// Whether it gives leaves the same thing as another node: the attribute of one group, or the constant of
+    /// one name.
+    pub(crate) fn binds_what(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Attribute { name, .. }, Self::Attribute { name: other, .. })
+            | (Self::Constant { name, .. }, Self::Constant { name: other, .. }) => name == other,
+            _ => false,
         }
     }
 
@@ -107,7 +147,8 @@ impl NodeKind {
             | Self::Expression(_)
             | Self::Select(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -128,7 +169,8 @@ impl NodeKind {
             | Self::Expression(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => 0..count,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => 0..count,
         }
     }
 }

@@ -15,11 +15,10 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use crate::attribute::AttributeValue;
 use crate::check::{CheckedNode, CheckedTree, NodeId};
 use crate::combine::{Combinator, Sum};
 use crate::constant::LeafConstant;
-use crate::descent::{Question, ask};
+use crate::descent::{GivenAttribute, Question, ask};
 use crate::diagnostic::Span;
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
@@ -59,11 +58,13 @@ impl Owner {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => path + word(node),
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => path + word(node),
         }
     }
 
-    /// The constants that the leaf has, by name: of several of one name above it the nearest one.
+    /// The constants that the leaf has, by name: of several of one name above it the nearest one, unless one
+    /// overrides it.
     ///
     /// ```
     /// use jbt_model::builder::point;
@@ -77,8 +78,16 @@ impl Owner {
     /// ```
     #[must_use]
     pub fn constants<'a>(&self, tree: &'a CheckedTree) -> BTreeMap<&'a str, &'a LeafConstant> {
-        // The root comes first, so nearer ones replace it.
-        self.above.iter().filter_map(|&(node, _)| tree.node(node).kind.constant()).collect()
+        let mut found: BTreeMap<&str, &NodeKind> = BTreeMap::new();
+        for &(node, _) in &self.above {
+            let kind = &tree.node(node).kind;
+            let Some((name, _)) = kind.constant() else { continue };
+            // The root comes first, so nearer ones replace it.
+            if !found.get(name).is_some_and(|above| above.overrides()) {
+                found.insert(name, kind);
+            }
+        }
+        found.into_values().filter_map(NodeKind::constant).collect()
     }
 
     /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or of
@@ -115,7 +124,7 @@ fn word(node: &CheckedNode) -> &str {
         NodeKind::Combine(combinator) => combinator.name(),
         NodeKind::Affine(_) => "affine",
         NodeKind::Warp(warp) => warp.name(),
-        NodeKind::Attribute { name, .. } => name,
+        NodeKind::Attribute { name, .. } | NodeKind::Constant { name, .. } => name,
         NodeKind::Select(_) => "select",
         NodeKind::Expression(_) => "expression",
     }
@@ -204,7 +213,7 @@ impl Question for Owners {
         OwnerWay { child: child as u32, ..*way }
     }
 
-    fn given(&self, way: OwnerWay, _name: &str, _value: &AttributeValue, _p: DVec3) -> OwnerWay {
+    fn given(&self, way: OwnerWay, _node: GivenAttribute<'_>, _p: DVec3) -> OwnerWay {
         way
     }
 

@@ -17,6 +17,7 @@
 //! # Ok::<(), jbt_model::scopes::ScopeError>(())
 //! ```
 
+use crate::attribute::Precedence;
 use crate::combine::Combinator;
 use crate::map::MapKind;
 use crate::number::{Number, Vector};
@@ -98,7 +99,7 @@ impl Scopes {
     /// An attribute for what follows.
     pub fn attribute<T: Into<Number> + Clone>(&mut self, name: &str, values: &[T]) -> &mut Self {
         let value = WrittenAttribute::Numbers(values.iter().cloned().map(Into::into).collect());
-        let written = Written::Attribute { name: name.into(), value };
+        let written = Written::Attribute { name: name.into(), value, precedence: Precedence::Nearest };
         self.scope().around.push(written);
         self
     }

@@ -51,8 +51,8 @@ impl TourStep {
         self.state.warp
     }
 
-    /// The attribute nodes and constants above that hold here: of each name the nearest one, in the order of
-    /// the nodes that first gave the names.
+    /// The attribute nodes and constants above that hold here: of each name the nearest one, unless one
+    /// overrides it, in the order of the nodes that first gave the names.
     #[must_use]
     pub fn bound(&self) -> &[NodeId] {
         &self.state.bound
@@ -95,15 +95,11 @@ impl Tour<'_> {
                 let map = DAffine3::IDENTITY;
                 Rc::new(TourState { map, warp: Some(step.node), ..TourState::clone(&step.state) })
             }
-            NodeKind::Attribute { name, .. } => {
+            NodeKind::Attribute { .. } | NodeKind::Constant { .. } => {
                 let mut state = TourState::clone(&step.state);
-                let is_constant = node.kind.constant().is_some();
-                let is_replaced = |&bound: &NodeId| {
-                    let kind = &self.tree.node(bound).kind;
-                    matches!(kind, NodeKind::Attribute { name: other, .. } if other == name)
-                        && kind.constant().is_some() == is_constant
-                };
+                let is_replaced = |&bound: &NodeId| self.tree.node(bound).kind.binds_what(&node.kind);
                 match state.bound.iter().position(is_replaced) {
+                    Some(place) if self.tree.node(state.bound[place]).kind.overrides() => {}
                     Some(place) => state.bound[place] = step.node,
                     None => state.bound.push(step.node),
                 }

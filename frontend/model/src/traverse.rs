@@ -135,7 +135,7 @@ mod tests {
     fn letters<'a>(trees: impl Iterator<Item = &'a Tree>) -> String {
         let letter = |tree: &Tree| match tree.node().written() {
             Written::Combine { .. } | Written::Expression(_) => 'a',
-            Written::Attribute { .. } => 'b',
+            Written::Attribute { .. } | Written::Constant { .. } => 'b',
             Written::Map { .. } | Written::Warp { .. } | Written::FormulaWarp(_) | Written::Select(_) => 'c',
             Written::Primitive { .. } | Written::Particles(_) => 'd',
         };

@@ -18,10 +18,10 @@ use std::rc::Rc;
 
 use glam::DVec3;
 
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
+use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, OperatorForm, ReduceCode, Sum};
-use crate::descent::{Question, ask};
+use crate::descent::{GivenAttribute, Question, ask};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
 use crate::particles::{ParticleValues, Particles};
@@ -56,8 +56,21 @@ enum Given {
     Uv(UvMap),
 }
 
+/// What counts of an attribute group on the way down.
+#[derive(Clone)]
+struct Heard {
+    given: Given,
+    precedence: Precedence,
+}
+
 /// What the way down has found of all groups.
-type Way = Rc<[Given]>;
+type Way = Rc<[Heard]>;
+
+impl Heard {
+    fn numbers(value: Vec<f64>) -> Self {
+        Self { given: Given::Value(value, f64::INFINITY), precedence: Precedence::Nearest }
+    }
+}
 
 /// What is known at a node.
 #[derive(Clone)]
@@ -80,7 +93,7 @@ struct SampleAnswer {
 #[must_use]
 pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
     let defaults: GroupValues = tree.attributes().iter().map(|group| group.default.clone()).collect();
-    let unbound: Way = defaults.iter().map(|value| Given::Value(value.clone(), f64::INFINITY)).collect();
+    let unbound: Way = defaults.iter().map(|value| Heard::numbers(value.clone())).collect();
     let root = ask(tree, &mut SampleQuestion { tree, defaults }, unbound, p.into());
     finish(tree, &root)
 }
@@ -105,15 +118,12 @@ impl Question for SampleQuestion<'_> {
         Rc::clone(way)
     }
 
-    fn given(&self, way: Way, name: &str, value: &AttributeValue, p: DVec3) -> Way {
-        // Nearer to the leaves than whatever was said above: it replaces it.
-        if matches!(value, AttributeValue::Constant(_)) {
-            return way;
-        }
+    fn given(&self, way: Way, node: GivenAttribute<'_>, p: DVec3) -> Way {
+        // Nearer to the leaves than whatever was said above: it replaces it, unless that overrides.
         let mut way = way.to_vec();
         for (group, above) in self.tree.attributes().iter().zip(&mut way) {
-            if *group.name == *name {
-                *above = given(value, p);
+            if *group.name == *node.name && above.precedence == Precedence::Nearest {
+                *above = Heard { given: given(node.value, p), precedence: node.precedence };
             }
         }
         way.into()
@@ -177,17 +187,16 @@ fn given(value: &AttributeValue, p: DVec3) -> Given {
         AttributeValue::Expressed(expression) => {
             Given::Value(expression.values(p), expression.kink_distance(p, &[]))
         }
-        AttributeValue::Constant(_) => unreachable!("constants are of no group"),
     }
 }
 
 /// The values of all attribute groups at a leaf with this skeleton's uv, and how far they are from a jump.
 fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (GroupValues, f64) {
-    let value = |given: &Given| match given {
+    let value = |heard: &Heard| match &heard.given {
         Given::Value(value, _) => value.clone(),
         Given::Uv(map) => map.apply(skeleton.uv(p)).to_vec(),
     };
-    let jump = |given: &Given| match given {
+    let jump = |heard: &Heard| match &heard.given {
         Given::Value(_, kink_distance) => *kink_distance,
         Given::Uv(_) => skeleton.uv_kink_distance(p),
     };
@@ -219,11 +228,11 @@ fn sum(
                 continue;
             }
         }
-        let given = |(values, above): (&Option<&ParticleValues>, &Given)| match values {
-            Some(values) => Given::Value(values.of(particle).collect(), f64::INFINITY),
-            None => above.clone(),
+        let heard = |(values, above): (&Option<&ParticleValues>, &Heard)| match (values, above.precedence) {
+            (Some(values), Precedence::Nearest) => Heard::numbers(values.of(particle).collect()),
+            _ => above.clone(),
         };
-        let way: Way = own.iter().zip(way.iter()).map(given).collect();
+        let way: Way = own.iter().zip(way.iter()).map(heard).collect();
         let leaf = Primitive { skeleton: skeleton.into(), falloff, radius, strength };
         answers.push(primitive(&leaf, p, &way));
     }

@@ -12,6 +12,9 @@ pub const FIELD: &str = "field";
 /// The word for a constant of leaves.
 pub const CONSTANT: &str = "constant";
 
+/// The word before an attribute or a constant that counts whatever stands below.
+pub const OVERRIDE: &str = "override";
+
 /// The words that begin a statement.
 const STATEMENTS: [&str; 7] = ["jbt", "iso", "origin", "orientation", "param", "attribute", "let"];
 

@@ -21,7 +21,9 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
+use crate::attribute::Precedence;
 use crate::combine::CombinatorKind;
+use crate::constant::LeafConstant;
 use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
 use crate::field::{FieldKind, FieldValue};
@@ -112,6 +114,17 @@ pub enum Written {
         name: Arc<str>,
         /// What they have.
         value: WrittenAttribute,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
+    },
+    /// A constant of the leaves below.
+    Constant {
+        /// What is told of them.
+        name: Arc<str>,
+        /// What it is.
+        value: LeafConstant,
+        /// Whether it counts beside others of the name.
+        precedence: Precedence,
     },
 }
 
@@ -142,7 +155,8 @@ impl Written {
             | Self::Select(_)
             | Self::Map { .. }
             | Self::Warp { .. }
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -156,7 +170,7 @@ impl Written {
             Self::Particles(particles) => (&[], &[], particles.own_numbers()),
             Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
-            Self::Attribute { .. } => (&[], &[], [None; 2]),
+            Self::Attribute { .. } | Self::Constant { .. } => (&[], &[], [None; 2]),
             Self::Combine { fields, .. } | Self::Map { fields, .. } | Self::Warp { fields, .. } => {
                 (fields, &[], [None; 2])
             }
@@ -181,6 +195,7 @@ impl Written {
                 fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect()
             }
             Self::Attribute { value, .. } => value.numbers_mut(),
+            Self::Constant { .. } => Vec::new(),
         }
     }
 
@@ -205,7 +220,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => false,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => false,
         }
     }
 
@@ -257,8 +273,11 @@ impl Written {
             Self::Map { .. } => NodeKind::Affine(self.map()?),
             Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
             Self::FormulaWarp(formula) => NodeKind::Warp(FormulaWarp::from(formula).into()),
-            Self::Attribute { name, value } => {
-                NodeKind::Attribute { name: Arc::clone(name), value: value.value() }
+            Self::Attribute { name, value, precedence } => {
+                NodeKind::Attribute { name: Arc::clone(name), value: value.value(), precedence: *precedence }
+            }
+            Self::Constant { name, value, precedence } => {
+                NodeKind::Constant { name: Arc::clone(name), value: value.clone(), precedence: *precedence }
             }
         })
     }
@@ -293,7 +312,8 @@ impl Written {
             | Self::Select(_)
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => Freedom::Fixed,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => Freedom::Fixed,
         }
     }
 
@@ -341,7 +361,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         }
     }
 
@@ -356,7 +377,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => None,
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => None,
         };
         strength.is_some_and(Number::depends_on_parameters)
     }
@@ -377,7 +399,17 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => {}
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => {}
+        }
+        self
+    }
+
+    /// The same, which nothing below changes, if it is an attribute or a constant.
+    #[must_use]
+    pub fn overriding(mut self) -> Self {
+        if let Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } = &mut self {
+            *precedence = Precedence::Override;
         }
         self
     }
@@ -393,7 +425,8 @@ impl Written {
             | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => {}
+            | Self::Attribute { .. }
+            | Self::Constant { .. } => {}
         }
         self
     }

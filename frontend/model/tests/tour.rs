@@ -24,6 +24,7 @@ fn word(tree: &CheckedTree, step: &TourStep) -> &'static str {
         NodeKind::Affine(_) => "affine",
         NodeKind::Warp(warp) => warp.name(),
         NodeKind::Attribute { .. } => "attribute",
+        NodeKind::Constant { .. } => "constant",
     }
 }
 

@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 
 use jbt_model::model::Model;
 use jbt_model::tree::Tree;
-use jbt_model::written::{Written, WrittenAttribute};
+use jbt_model::written::Written;
 
 use crate::hash::{ModelHash, hashes};
 use crate::item::{node_words, statements};
@@ -142,9 +142,7 @@ fn word(tree: &Tree) -> String {
 /// The first word of a node.
 fn kind(tree: &Tree) -> String {
     match tree.node().written() {
-        Written::Attribute { name, value } if !matches!(value, WrittenAttribute::Constant(_)) => {
-            name.to_string()
-        }
+        Written::Attribute { name, .. } => name.to_string(),
         _ => node_words(tree).split([' ', '{', '(']).next().unwrap_or_default().to_owned(),
     }
 }

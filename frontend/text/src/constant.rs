@@ -9,23 +9,24 @@ use super::block::{Begun, Head};
 use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
+use jbt_model::attribute::Precedence;
 use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::parameter::Fixture;
 use jbt_model::word::normalized;
-use jbt_model::written::{Written, WrittenAttribute};
+use jbt_model::written::Written;
 
 impl<'a> Parser<'a> {
     /// A constant whose word, `start`, has just been taken.
-    pub(super) fn constant(&mut self, start: Token) -> Begun<'a> {
+    pub(super) fn constant(&mut self, start: Token, precedence: Precedence) -> Begun<'a> {
         let Some(name) = self.peek_word() else {
             self.expected_at(self.peek(), "expected the name of a constant");
             return self.block(start, Head::Broken);
         };
         self.next();
         let value = self.constant_value();
-        let value = value.map(WrittenAttribute::Constant);
-        self.unary(start, value.map(|value| Written::Attribute { name: normalized(name).into(), value }))
+        let name = normalized(name).into();
+        self.unary(start, value.map(|value| Written::Constant { name, value, precedence }))
     }
 
     /// Text in quotes, or a whole number; nothing after an error.

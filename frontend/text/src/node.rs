@@ -9,6 +9,7 @@ use super::lex::{Token, TokenKind};
 use super::program::known::Value;
 use super::state::Parser;
 use super::words::{EMPTY, GROUP_NODE, PARTICLES, WEIGHTED, fixed_words};
+use jbt_model::attribute::Precedence;
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::expression::Formula;
@@ -17,7 +18,7 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::tree::Tree;
 use jbt_model::warp::WarpKind;
-use jbt_model::word::{CONSTANT, is_statement};
+use jbt_model::word::{CONSTANT, OVERRIDE, is_statement};
 use jbt_model::written::Written;
 
 impl<'a> Parser<'a> {
@@ -26,14 +27,14 @@ impl<'a> Parser<'a> {
         fixed_words().any(|fixed| fixed == word)
             || self.group(word).is_some()
             || self.program.defines(word)
-            || ["for", "if", "include", EMPTY, CONSTANT].contains(&word)
+            || ["for", "if", "include", EMPTY, CONSTANT, OVERRIDE].contains(&word)
     }
 
     /// All words that begin a node of this file.
     fn node_words(&self) -> impl Iterator<Item = &str> {
         let fixed = fixed_words().map(|word| -> &str { word });
         let own = self.attributes.iter().map(|group| &*group.name);
-        fixed.chain([EMPTY, CONSTANT]).chain(own).chain(self.program.definition_names())
+        fixed.chain([EMPTY, CONSTANT, OVERRIDE]).chain(own).chain(self.program.definition_names())
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -165,22 +166,14 @@ impl<'a> Parser<'a> {
                 self.combinator(start, CombinatorKind::Ricci)
             }
             _ if MapKind::named(word).next().is_some() => self.map(start, word),
-            GROUP_NODE => match self.peek_word() {
-                Some(name) => {
-                    let at = self.next();
-                    self.attribute(start, at, name)
-                }
-                None => {
-                    self.expected_at(self.peek(), "expected an attribute's name");
-                    self.block(start, Head::Broken)
-                }
-            },
-            _ if self.group(word).is_some() => self.attribute(start, start, word),
+            GROUP_NODE => self.named_attribute(start, Precedence::Nearest),
+            _ if self.group(word).is_some() => self.attribute(start, (start, word), Precedence::Nearest),
             _ if self.program.defines(word) => self.call(start, word),
             _ if self.is_loop(word) => self.for_node(start),
             _ if self.is_condition(word) => self.if_node(start),
             _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
-            CONSTANT => self.constant(start),
+            CONSTANT => self.constant(start, Precedence::Nearest),
+            OVERRIDE => self.override_node(start),
             EMPTY => {
                 self.count_node(start.span());
                 Begun::Leaf(self.make(start.span(), Written::Expression(Formula::zero()), Vec::new()))
@@ -315,7 +308,44 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun<'a> {
+    /// An attribute or a constant that overrides, whose word, `start`, has just been taken.
+    fn override_node(&mut self, start: Token) -> Begun<'a> {
+        let precedence = Precedence::Override;
+        match self.peek_word() {
+            Some(word) if self.group(word).is_some() => {
+                let at = self.next();
+                self.attribute(start, (at, word), precedence)
+            }
+            Some(GROUP_NODE) => {
+                self.next();
+                self.named_attribute(start, precedence)
+            }
+            Some(CONSTANT) => {
+                self.next();
+                self.constant(start, precedence)
+            }
+            _ => {
+                self.expected_at(self.peek(), "expected an attribute's name, or `constant`");
+                self.block(start, Head::Broken)
+            }
+        }
+    }
+
+    /// An attribute whose name is next.
+    fn named_attribute(&mut self, start: Token, precedence: Precedence) -> Begun<'a> {
+        match self.peek_word() {
+            Some(name) => {
+                let at = self.next();
+                self.attribute(start, (at, name), precedence)
+            }
+            None => {
+                self.expected_at(self.peek(), "expected an attribute's name");
+                self.block(start, Head::Broken)
+            }
+        }
+    }
+
+    fn attribute(&mut self, start: Token, (at, name): (Token, &str), precedence: Precedence) -> Begun<'a> {
         let group = self.attributes.iter().find(|group| &*group.name == name);
         let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
             self.report_with(|parser| {
@@ -326,7 +356,7 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Broken);
         };
         let value = self.attribute_value(at, &name, width);
-        self.unary(start, value.map(|value| Written::Attribute { name, value }))
+        self.unary(start, value.map(|value| Written::Attribute { name, value, precedence }))
     }
 
     fn known_groups(&self) -> String {

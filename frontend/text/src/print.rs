@@ -13,7 +13,7 @@ use super::particles::AT;
 use super::words::{
     COMMON_FIELDS, EMPTY, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
 };
-use jbt_model::attribute::AttributeGroup;
+use jbt_model::attribute::{AttributeGroup, Precedence};
 use jbt_model::combine::{CombinatorKind, Syntax};
 use jbt_model::diagnostic::escape;
 use jbt_model::expression::{Formula, write as write_formula};
@@ -25,7 +25,7 @@ use jbt_model::orientation::Orientation;
 use jbt_model::parameter::{Parameter, ParameterRange};
 use jbt_model::particles::{ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
-use jbt_model::word::{CONSTANT, is_identifier, is_statement};
+use jbt_model::word::{CONSTANT, OVERRIDE, is_identifier, is_statement};
 use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
     WrittenTextured, WrittenUv,
@@ -275,7 +275,8 @@ impl Printer {
             Written::Map { .. }
             | Written::Warp { .. }
             | Written::FormulaWarp(_)
-            | Written::Attribute { .. } => {
+            | Written::Attribute { .. }
+            | Written::Constant { .. } => {
                 let weighted = children.len() > 1;
                 let _ = if weighted { write!(out, " {WEIGHTED} {{ ") } else { write!(out, " {{ ") };
                 stack.push(Item::Text(" }"));
@@ -360,7 +361,14 @@ pub(super) fn head(out: &mut String, written: &Written, definitions: &str) {
             }
         }
         Written::FormulaWarp(formula) => formula_warp(out, formula, definitions),
-        Written::Attribute { name, value } => attribute(out, name, value, definitions),
+        Written::Attribute { name, value, precedence } => {
+            before(out, *precedence);
+            attribute(out, name, value, definitions);
+        }
+        Written::Constant { name, value, precedence } => {
+            before(out, *precedence);
+            let _ = write!(out, "{CONSTANT} {name} {value}");
+        }
     }
 }
 
@@ -387,10 +395,20 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
     out.push_str(" }");
 }
 
+/// What stands before an attribute or a constant.
+fn before(out: &mut String, precedence: Precedence) {
+    match precedence {
+        Precedence::Nearest => {}
+        Precedence::Override => {
+            let _ = write!(out, "{OVERRIDE} ");
+        }
+    }
+}
+
 fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    let is_constant = matches!(value, WrittenAttribute::Constant(_));
-    let before = if is_constant { Some(CONSTANT) } else { is_reserved(name).then_some(GROUP_NODE) };
-    let _ = before.map_or(Ok(()), |word| write!(out, "{word} "));
+    if is_reserved(name) {
+        let _ = write!(out, "{GROUP_NODE} ");
+    }
     out.push_str(name);
     match value {
         WrittenAttribute::Numbers(numbers) => {
@@ -408,9 +426,6 @@ fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions
             out.push_str(" }");
         }
         WrittenAttribute::Uv(map) => uv(out, map),
-        WrittenAttribute::Constant(value) => {
-            let _ = write!(out, " {value}");
-        }
         WrittenAttribute::Expressed(formula) => {
             out.push(' ');
             expression(out, formula, |place| format!("n{place}"), definitions);

@@ -57,6 +57,16 @@ fn parts_have_their_own() {
     let text = "part \"hub\" { constant a 1 { point { radius 1 } } } part \"rim\" { point { radius 1 } }";
     let pieces = read(text).check().unwrap().constants_of_pieces();
     assert_eq!(pieces.iter().map(Vec::len).collect::<Vec<_>>(), [1, 0]);
+    // What parts share counts for each of them, in the order of each.
+    let shared = "let arm = union { constant a 2 { point { radius 1 } } constant a 3 { point { radius 2 } } }
+        part \"hub\" { constant a 1 { union { use arm point { radius 4 } } } }
+        part \"rim\" { use arm constant a 2 { use arm } constant a 4 { point { radius 1 } } }
+        part \"pin\" { use arm }";
+    let pieces = read(shared).check().unwrap().constants_of_pieces();
+    let told: Vec<String> = pieces.iter().map(|piece| format!("{:?}", piece[0].values)).collect();
+    let of =
+        |numbers: &[i64]| format!("{:?}", numbers.iter().map(|&n| LeafConstant::from(n)).collect::<Vec<_>>());
+    assert_eq!(told, [of(&[1, 2, 3]), of(&[2, 3, 4]), of(&[2, 3])]);
     // What is selected keeps what stands above it.
     let selected = read("constant a 1 { union { x: point { radius 1 } y: point { at (3 0 0) radius 1 } } }");
     assert_eq!(selected.only("y").unwrap().check().unwrap().constants()[0].values, [1.into()]);

@@ -215,6 +215,17 @@ class Model(ModelMembers):
         """
         return Model(self._native.constant(name, value))
 
+    def overriding(self) -> Model:
+        """The same, but the attribute or constant that it begins with counts for all leaves below, whatever
+        stands nearer to them. Of several that override, the one that was put around the others counts.
+
+        >>> import jbt
+        >>> pin = jbt.point(radius=1).constant("part", 17)
+        >>> pin.constant("part", 1).overriding().owner([[0, 0, 0.1]]).constants
+        [{'part': 1}]
+        """
+        return Model(self._native.overriding())
+
     def textured(self, name: str, pattern: _jbt.Pattern, a: Reals, b: Reals) -> Model:
         """An attribute by a pattern: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the
         space of this model: maps of the whole move it, maps below do not."""

@@ -49,7 +49,10 @@ pub fn circles(tree: &CheckedTree, plane: &Plane) -> Vec<([f64; 2], f64)> {
             }
             NodeKind::Warp(_) | NodeKind::Expression(_) => continue,
             NodeKind::Affine(inner) => map * *inner,
-            NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Attribute { .. } => map,
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => map,
         };
         stack.extend(node.kind.asked(&node.children).iter().rev().map(|&child| (child, map)));
     }

@@ -20,13 +20,14 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
 use std::ops::Range;
 
-use jbt_model::constant::{ConstantValues, LeafConstant};
+use jbt_model::constant::ConstantValues;
 use jbt_model::orientation::ModelUp;
 use serde_json::{Map, Value, json};
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{
-    NamedAttribute, WriteError, colors, finite, others, push_reals, push_three, uvs, write_items,
+    NamedAttribute, WriteError, colors, constant_json, finite, others, push_reals, push_three, uvs,
+    write_items,
 };
 use crate::boxes::Box3;
 use crate::mesh::Mesh;
@@ -267,14 +268,10 @@ fn say(node: &mut Value, shape: &mut Value, name: Option<&str>, constants: &[Con
 
 /// The constants of a piece: a value, or a list where leaves differ.
 fn extras(constants: &[ConstantValues]) -> Option<Value> {
-    let value = |value: &LeafConstant| match value {
-        LeafConstant::Whole(number) => json!(number),
-        LeafConstant::Text(text) => json!(text),
-    };
     let entry = |ConstantValues { name, values }: &ConstantValues| {
         let told = match &values[..] {
-            [one] => value(one),
-            several => several.iter().map(value).collect(),
+            [one] => constant_json(one),
+            several => several.iter().map(constant_json).collect(),
         };
         (name.clone(), told)
     };

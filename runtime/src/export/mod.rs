@@ -32,6 +32,7 @@ mod zip;
 pub use atomic::AtomicFile;
 pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, LengthUnit, Up};
 pub use format::{ExportOptions, Format};
+pub use parts::constant_json;
 pub use png::{PngEffort, write_png, write_png_with};
 
 use std::borrow::Cow;

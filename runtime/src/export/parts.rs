@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::io::{self, Write};
 
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use jbt_model::constant::{ConstantValues, LeafConstant};
@@ -125,6 +126,15 @@ pub(super) fn push_three(bytes: &mut Vec<u8>, words: [u32; 3]) {
         *place = word.to_le_bytes();
     }
     bytes.extend_from_slice(&three);
+}
+
+/// A constant as JSON: a number or a string.
+#[must_use]
+pub fn constant_json(constant: &LeafConstant) -> Value {
+    match constant {
+        LeafConstant::Whole(number) => json!(number),
+        LeafConstant::Text(text) => json!(text),
+    }
 }
 
 /// The values of a constant in one line: text as it is, and several with commas between.

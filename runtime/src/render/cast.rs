@@ -93,14 +93,15 @@ fn is_colored(tree: &CheckedTree) -> bool {
     let color = tree.attributes().iter().find(|group| &*group.name == "color");
     let is_white = color.is_none_or(|color| color.default.iter().all(|&channel| channel == 1.0));
     let gives = |kind: &NodeKind| match kind {
-        NodeKind::Attribute { name, .. } => &**name == "color" && kind.constant().is_none(),
+        NodeKind::Attribute { name, .. } => &**name == "color",
         NodeKind::Particles(particles) => particles.values_of("color").is_some(),
         NodeKind::Primitive(_)
         | NodeKind::Combine(_)
         | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
-        | NodeKind::Warp(_) => false,
+        | NodeKind::Warp(_)
+        | NodeKind::Constant { .. } => false,
     };
     !is_white || tree.nodes().iter().any(|node| gives(&node.kind))
 }

@@ -89,6 +89,53 @@ fn dominant() -> Vec<Row> {
     ]
 }
 
+/// Which of several values counts.
+mod precedence {
+    use jbt::{CheckedTree, Model};
+    use jbt_model::attribute::Precedence;
+    use jbt_model::check::CheckedNode;
+    use jbt_model::kind::NodeKind;
+
+    use crate::check::judge;
+    use crate::row::{Family, Row, members, row};
+
+    members! { Precedence {
+        Nearest => vec![leaves("color (0 1 0)").attribute("color", [0.0; 3], &[0.25, 0.0, 0.75])],
+        Override => vec![
+            leaves("override color (0 1 0)").attribute("color", [0.0; 3], &[0.0, 1.0, 0.0]),
+            leaves("color (1 1 0) { override color (0.5 0.5 0.5) {").attribute("color", [0.0; 3], &[0.5; 3]),
+            leaves("override color expression { (x, 1, 0) } { color (1 1 0) {")
+                .attribute("color", [0.0; 3], &[0.0, 1.0, 0.0])
+                .attribute("color", [-1.0, 0.0, 0.0], &[-1.0, 1.0, 0.0]),
+        ],
+    } }
+
+    /// Red and blue particles and a point, below a node or two.
+    fn leaves(head: &str) -> Row {
+        let (head, end) =
+            if head.ends_with('{') { (head.to_owned(), "} }") } else { (format!("{head} {{"), "}") };
+        let text = format!(
+            "{head} sum {{
+            particles {{ at ((-1 0 0) (1 0 0)) radius 2 strength (1 2) color ((1 0 0) (0 0 1)) }}
+            color (0 0 1) {{ point {{ at (0 1 0) radius 2 }} }} }} {end}"
+        );
+        row("below one or two", &text, &[([0.0; 3], 2.0)])
+    }
+
+    fn found(_: &Model, tree: &CheckedTree) -> Vec<&'static str> {
+        let of = |node: &CheckedNode| {
+            let NodeKind::Attribute { precedence, .. } = &node.kind else { return None };
+            Some(name(precedence))
+        };
+        tree.nodes().iter().filter_map(of).collect()
+    }
+
+    #[test]
+    fn every_precedence() {
+        judge(Family { name: "precedence", members: members(), found });
+    }
+}
+
 /// What attribute nodes give.
 mod values {
     use jbt::{CheckedTree, Model};
@@ -105,8 +152,6 @@ mod values {
         Textured(_) => textured(),
         Uv(_) => uv(),
         Expressed(_) => expressed(),
-        Constant(_) => vec![row("a constant, which no program knows", "constant color \"red\" { color (0 1 0) { constant part 17 { point { radius 1 } } } }", &[([0.0; 3], 1.0)])
-            .attribute("color", [0.5, 0.0, 0.0], &[0.0, 1.0, 0.0])],
     } }
 
     fn found(_: &Model, tree: &CheckedTree) -> Vec<&'static str> {

@@ -46,6 +46,8 @@ members! { NodeKind {
     .attribute("color", [0.0; 3], &[0.5, 0.5, 0.0])
     .attribute("color", [-2.0, 0.0, 0.0], &[1.0, 0.0, 0.0])
     .attribute("color", [2.0, 0.0, 0.0], &[0.0, 1.0, 0.0])],
+    Constant { .. } => vec![row("which no program knows", "constant color \"red\" { color (0 1 0) { constant part 17 { point { radius 1 } } } }", &[([0.0; 3], 1.0)])
+        .attribute("color", [0.5, 0.0, 0.0], &[0.0, 1.0, 0.0])],
 } }
 
 fn found(_: &Model, tree: &CheckedTree) -> Vec<&'static str> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_model::affine::scale_rotate_translate;
-use jbt_model::attribute::{AttributeGroup, AttributeValue, Textured, UvMap};
+use jbt_model::attribute::{AttributeGroup, AttributeValue, Precedence, Textured, UvMap};
 use jbt_model::builder::noise;
 use jbt_model::falloff::{Falloff, FalloffKind};
 use jbt_model::field::FieldValue;
@@ -134,7 +134,9 @@ impl Random {
             };
         }
         let value = self.value(pick, group.width());
-        Tree::new(NodeKind::Attribute { name: Arc::clone(&group.name), value }, vec![tree.clone()])
+        let precedence = if self.shape.u8(0..4) == 0 { Precedence::Override } else { Precedence::Nearest };
+        let kind = NodeKind::Attribute { name: Arc::clone(&group.name), value, precedence };
+        Tree::new(kind, vec![tree.clone()])
     }
 
     /// What an attribute node gives: numbers, a texture, or uv where that fits.

@@ -41,7 +41,7 @@ impl Finder<'_> {
         let tree = self.scene.tree;
         let node = bound.node;
         let (key, kind, position, map, map_kind) = match attribute(self.scene.tree, node) {
-            AttributeValue::Numbers(_) | AttributeValue::Constant(_) => return None,
+            AttributeValue::Numbers(_) => return None,
             AttributeValue::Textured(textured) => {
                 let at = bound.at.expect("textures are bound with their places");
                 let kind = ComputedKind::Texture(textured.texture.code(tree.dependent(node).is_some()));

@@ -13,7 +13,6 @@ use crate::computed::share;
 use crate::demand::Demand;
 use crate::names::ComputedId;
 use crate::position::{Position, PositionKey, Trails, position_key};
-use jbt_model::attribute::AttributeValue;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, Extreme, OperatorForm, ReduceCode, Union};
 use jbt_model::expression::Expression;
@@ -162,10 +161,14 @@ impl<'a> Finder<'a> {
                     moved = Some(Position { space, map: map * *inner, trail });
                 }
                 // Programs know no constants.
-                NodeKind::Attribute { value: AttributeValue::Constant(_), .. } => {}
-                NodeKind::Attribute { name, value } => {
+                NodeKind::Constant { .. } => {}
+                NodeKind::Attribute { name, value, .. } => {
                     let groups = self.scene.tree.attributes();
-                    if let Some(group) = groups.iter().position(|group| group.name == *name) {
+                    let group = groups.iter().position(|group| group.name == *name);
+                    let above = if rebound { &self.bound[..] } else { self.scene.bindings(bindings) };
+                    let stays =
+                        |group: &usize| above[*group].is_some_and(|bound| self.scene.overrides(bound));
+                    if let Some(group) = group.filter(|group| !stays(group)) {
                         let placed = value.is_placed();
                         let place = || moved.unwrap_or_else(|| *self.scene.position(position));
                         let at = placed.then(place).map(|place| self.name_position(place));
@@ -261,7 +264,9 @@ impl<'a> Finder<'a> {
                 self.selects = true;
                 InstanceKind::Select { children: frame.children, chosen: chosen(*which) }
             }
-            NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
+            NodeKind::Affine(_) | NodeKind::Attribute { .. } | NodeKind::Constant { .. } => {
+                unreachable!("resolve walks through these")
+            }
         };
         self.push(node, position, kind)
     }

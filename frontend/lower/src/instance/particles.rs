@@ -38,7 +38,7 @@ impl Finder<'_> {
         InstanceKind::Reduce { operator, code, children }
     }
 
-    /// The bindings of particles, without groups of which they have values of their own.
+    /// The bindings of particles, without groups of which they have values of their own that count.
     fn without_own(&mut self, particles: &Particles, bindings: BindingsId) -> BindingsId {
         if particles.values().is_empty() {
             return bindings;
@@ -46,7 +46,8 @@ impl Finder<'_> {
         self.bound.clear();
         self.bound.extend_from_slice(self.scene.bindings(bindings));
         for (group, bound) in self.scene.tree.attributes().iter().zip(&mut self.bound) {
-            if particles.values_of(&group.name).is_some() {
+            let stays = bound.is_some_and(|bound| self.scene.overrides(bound));
+            if particles.values_of(&group.name).is_some() && !stays {
                 *bound = None;
             }
         }

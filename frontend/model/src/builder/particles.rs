@@ -1,6 +1,7 @@
 //! Particles: the sum of any number of points, from arrays.
 
 use super::Number;
+use crate::attribute::Precedence;
 use crate::combine::CombinatorKind;
 use crate::particles::{NumberArray, ParticleValues, PerParticle};
 use crate::tree::Tree;
@@ -82,7 +83,7 @@ impl Tree {
             let point = |(written, values): (Written, Vec<_>)| {
                 let leaf = Self::new(written, Vec::new());
                 let give = |tree: Self, (name, value): (std::sync::Arc<str>, _)| {
-                    Self::new(Written::Attribute { name, value }, vec![tree])
+                    Self::new(Written::Attribute { name, value, precedence: Precedence::Nearest }, vec![tree])
                 };
                 values.into_iter().fold(leaf, give)
             };
@@ -101,7 +102,8 @@ impl Tree {
             | Written::Map { .. }
             | Written::Warp { .. }
             | Written::FormulaWarp(_)
-            | Written::Attribute { .. } => None,
+            | Written::Attribute { .. }
+            | Written::Constant { .. } => None,
         })
     }
 }

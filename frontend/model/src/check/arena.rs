@@ -85,7 +85,8 @@ fn leaves_in(kind: &NodeKind) -> u64 {
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => 0,
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => 0,
     }
 }
 
@@ -131,7 +132,8 @@ pub(super) fn check_instances(report: &mut Report, nodes: &[CheckedNode], most: 
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => 0,
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => 0,
         };
         uses = uses.saturating_add(rows);
     }

@@ -47,7 +47,6 @@ impl CheckedTree {
         let mut left_out: HashSet<NodeId> = HashSet::new();
         for (index, node) in nodes.iter_mut().enumerate() {
             if let NodeKind::Attribute { name, .. } = &node.kind
-                && node.kind.constant().is_none()
                 && !is_wanted(name)
             {
                 // A map that changes nothing is no code.

@@ -36,6 +36,8 @@ impl CheckedTree {
 
     /// The constants of each piece of a mesh of this model: of each part, or of the whole model if it has no
     /// parts.
+    ///
+    /// Cost: the nodes, for each name, and for each part again those at which different values meet.
     #[must_use]
     pub fn constants_of_pieces(&self) -> Vec<Vec<ConstantValues>> {
         let parts: Vec<NodeId> = self.parts().into_iter().map(|part| part.node).collect();
@@ -66,20 +68,53 @@ struct ConstantSearch<'a> {
     name: &'a str,
     /// Of each node, whether it has a leaf that has no constant of this name below the node.
     bare: Vec<bool>,
+    /// Of each node, the values that count for leaves below it.
+    values: Vec<ValuesBelow<'a>>,
     /// Of each node, the last round in which it was met.
     met: Vec<u32>,
     round: u32,
 }
 
+/// The values of one name that count for some leaf below a node.
+#[derive(Clone, Copy, PartialEq)]
+enum ValuesBelow<'a> {
+    Nothing,
+    One(&'a LeafConstant),
+    /// Those of this node, at which different ones meet.
+    Several(NodeId),
+}
+
 impl<'a> ConstantSearch<'a> {
+    /// Looks at each node once, however many parts share it.
     fn new(tree: &'a CheckedTree, name: &'a str) -> Self {
-        let mut bare: Vec<bool> = Vec::with_capacity(tree.nodes().len());
-        for CheckedNode { kind, children, .. } in tree.nodes() {
-            let below =
-                children.is_empty() || heard(kind, children).iter().any(|child| bare[child.0 as usize]);
-            bare.push(below && kind.constant().is_none_or(|(found, _)| found != name));
+        let count = tree.nodes().len();
+        let (bare, values) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut search = Self { tree, name, bare, values, met: vec![0; count], round: 0 };
+        for (index, CheckedNode { kind, children, .. }) in tree.nodes().iter().enumerate() {
+            let id = NodeId(index as u32);
+            let values = {
+                let mut found = search.own_and_below(id).filter(|values| *values != ValuesBelow::Nothing);
+                let first = found.next().unwrap_or(ValuesBelow::Nothing);
+                if found.all(|other| other == first) { first } else { ValuesBelow::Several(id) }
+            };
+            let mut heard = heard(kind, children).iter();
+            let below = children.is_empty() || heard.any(|child| search.bare[child.0 as usize]);
+            let bare = below && kind.constant().is_none_or(|(found, _)| found != name);
+            search.values.push(values);
+            search.bare.push(bare);
         }
-        Self { tree, name, met: vec![0; bare.len()], bare, round: 0 }
+        search
+    }
+
+    /// The value of a node, if it counts for a leaf, and the values below its children.
+    fn own_and_below(&self, id: NodeId) -> impl DoubleEndedIterator<Item = ValuesBelow<'a>> {
+        let CheckedNode { kind, children, .. } = self.tree.node(id);
+        let own = kind.constant().filter(|(found, _)| *found == self.name);
+        let overrides = own.is_some() && kind.overrides();
+        let own = own.filter(|_| overrides || self.bare[children[0].0 as usize]);
+        let own = own.map(|(_, value)| ValuesBelow::One(value));
+        let children = if overrides { &[] } else { heard(kind, children) };
+        own.into_iter().chain(children.iter().map(|child| self.values[child.0 as usize]))
     }
 
     /// The values that count for some leaf below a node: those with a bare leaf below them.
@@ -87,19 +122,21 @@ impl<'a> ConstantSearch<'a> {
         self.round += 1;
         let mut values = Vec::new();
         let mut known: HashSet<&LeafConstant> = HashSet::new();
-        let mut stack = vec![root];
-        while let Some(id) = stack.pop() {
-            if std::mem::replace(&mut self.met[id.0 as usize], self.round) == self.round {
-                continue;
+        let mut stack = vec![self.values[root.0 as usize]];
+        while let Some(below) = stack.pop() {
+            match below {
+                ValuesBelow::Nothing => {}
+                ValuesBelow::One(value) => {
+                    if known.insert(value) {
+                        values.push(value.clone());
+                    }
+                }
+                ValuesBelow::Several(id) => {
+                    if std::mem::replace(&mut self.met[id.0 as usize], self.round) != self.round {
+                        stack.extend(self.own_and_below(id).rev());
+                    }
+                }
             }
-            let CheckedNode { kind, children, .. } = self.tree.node(id);
-            if let Some((_, value)) = kind.constant().filter(|(found, _)| *found == self.name)
-                && self.bare[children[0].0 as usize]
-                && known.insert(value)
-            {
-                values.push(value.clone());
-            }
-            stack.extend(heard(kind, children).iter().rev());
         }
         values
     }
@@ -116,7 +153,8 @@ fn heard<'a>(kind: &NodeKind, children: &'a [NodeId]) -> &'a [NodeId] {
         | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
-        | NodeKind::Attribute { .. } => kind.asked(children),
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => kind.asked(children),
     }
 }
 

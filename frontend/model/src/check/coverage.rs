@@ -14,7 +14,7 @@ use jbt_ir::limits;
 
 use super::arena::{CheckedNode, Children, NodeId};
 use super::tree::CheckedTree;
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing};
+use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::kind::NodeKind;
 use crate::particles::{NumberArray, ParticleValues};
@@ -69,7 +69,8 @@ impl CheckedTree {
             let mut above = copy;
             if gives(&node.kind, group) {
                 let value = AttributeValue::Numbers(vec![1.0]);
-                let kind = NodeKind::Attribute { name: Arc::clone(&name), value };
+                let kind =
+                    NodeKind::Attribute { name: Arc::clone(&name), value, precedence: Precedence::Nearest };
                 above = NodeId(nodes.len() as u32);
                 nodes.push(CheckedNode {
                     kind,
@@ -89,7 +90,7 @@ impl CheckedTree {
 
 /// Whether it is an attribute node of the group.
 fn gives(kind: &NodeKind, group: &str) -> bool {
-    matches!(kind, NodeKind::Attribute { name, .. } if &**name == group) && kind.constant().is_none()
+    matches!(kind, NodeKind::Attribute { name, .. } if &**name == group)
 }
 
 /// The same kind; particles with values of the group have values of its coverage as well.

@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
-use super::constants::check_constant;
 use super::fields::{check_expressed, check_fields};
 use super::numbers::check_numbers;
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::NodeKind;
 use crate::report::{Report, clip, nearest};
-use crate::word::is_identifier;
+use crate::word::{OVERRIDE, is_identifier};
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
 pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
@@ -99,7 +98,22 @@ pub(super) fn another_width(span: Option<Span>, name: &str, width: usize, found:
     Diagnostic::error(span, message).expected(format!("expected {width} real{plural}"))
 }
 
-/// An attribute node: its group exists, and its value fits the group. Constants are of no group.
+/// What overrides is read as that, unless a group has the word's name.
+pub(super) fn check_override(
+    report: &mut Report,
+    span: Option<Span>,
+    kind: &NodeKind,
+    groups: &BTreeMap<&str, usize>,
+) {
+    if kind.overrides() && groups.contains_key(OVERRIDE) {
+        report.add(|| {
+            let message = format!("`{OVERRIDE}` beside an attribute of this name");
+            Diagnostic::error(span, message).expected("expected another name of the attribute")
+        });
+    }
+}
+
+/// An attribute node: its group exists, and its value fits the group.
 pub(super) fn check_attribute(
     report: &mut Report,
     span: Option<Span>,
@@ -107,9 +121,6 @@ pub(super) fn check_attribute(
     value: &AttributeValue,
     groups: &BTreeMap<&str, usize>,
 ) {
-    if let AttributeValue::Constant(value) = value {
-        return check_constant(report, span, (name, value), groups);
-    }
     let Some(width) = known_width(report, span, name, groups) else { return };
     let mut fits = |numbers: &[f64]| {
         if numbers.len() != width {
@@ -119,7 +130,6 @@ pub(super) fn check_attribute(
     };
     match value {
         AttributeValue::Numbers(numbers) => fits(numbers),
-        AttributeValue::Constant(_) => {}
         AttributeValue::Textured(Textured { texture, a, b }) => {
             fits(a);
             fits(b);

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use glam::{DAffine3, DMat3};
 use jbt_ir::limits;
 
+use super::constants::check_constant;
 use super::fields::{check_expressed, check_falloff, check_fields};
-use super::groups::check_attribute;
+use super::groups::{check_attribute, check_override};
 use super::numbers::{check_choice, check_formula, check_number, check_numbers};
 use super::particles::check_particles;
 use crate::diagnostic::{Diagnostic, Span};
@@ -72,8 +73,14 @@ pub(super) fn check_node(
             }
             (count == 1 || count == 2, "one child, or a second one that gives its weight")
         }
-        NodeKind::Attribute { name, value } => {
+        NodeKind::Attribute { name, value, .. } => {
+            check_override(report, span, kind, groups);
             check_attribute(report, span, name, value, groups);
+            (count == 1, "one child")
+        }
+        NodeKind::Constant { name, value, .. } => {
+            check_override(report, span, kind, groups);
+            check_constant(report, span, (name, value), groups);
             (count == 1, "one child")
         }
     };
@@ -93,8 +100,8 @@ fn describe(kind: &NodeKind) -> String {
         NodeKind::Expression(_) => "a node `expression`".to_owned(),
         NodeKind::Affine(_) => "an affine map".to_owned(),
         NodeKind::Warp(warp) => format!("a {}", warp.name()),
-        NodeKind::Attribute { name, .. } if kind.constant().is_some() => format!("the constant `{name}`"),
         NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
+        NodeKind::Constant { name, .. } => format!("the constant `{name}`"),
     }
 }
 

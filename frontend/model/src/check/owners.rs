@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use super::arena::{CheckedNode, Children, NodeId};
 use super::tree::CheckedTree;
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing};
+use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::kind::NodeKind;
 
@@ -75,7 +75,8 @@ impl CheckedTree {
             if node.children.is_empty() {
                 let leaf = NodeId(nodes.len() as u32 - 1);
                 let value = AttributeValue::Numbers(value(NodeId(index as u32)));
-                let kind = NodeKind::Attribute { name: Arc::clone(&name), value };
+                let kind =
+                    NodeKind::Attribute { name: Arc::clone(&name), value, precedence: Precedence::Nearest };
                 let children = Children::from_slice(&[leaf]);
                 nodes.push(CheckedNode { kind, children, span: node.span, label: None });
             }

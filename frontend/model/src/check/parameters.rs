@@ -295,7 +295,8 @@ pub(super) fn is_in_pieces(kind: &NodeKind) -> bool {
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => false,
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => false,
     }
 }
 

@@ -58,6 +58,6 @@ fn word(node: &Node) -> &str {
         Written::Map { map, .. } => map.name(),
         Written::Warp { warp, .. } => warp.name(),
         Written::FormulaWarp(_) => "warp",
-        Written::Attribute { name, .. } => name,
+        Written::Attribute { name, .. } | Written::Constant { name, .. } => name,
     })
 }

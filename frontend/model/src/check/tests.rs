@@ -6,8 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::limits;
 
 use super::*;
-use crate::attribute::AttributeGroup;
-use crate::attribute::Mixing;
+use crate::attribute::{AttributeGroup, Mixing, Precedence};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::combine::{
@@ -40,7 +39,14 @@ fn affine(map: DAffine3, child: Tree) -> Tree {
 }
 
 fn attribute(name: &str, values: &[f64], child: Tree) -> Tree {
-    Tree::new(NodeKind::Attribute { name: name.into(), value: values.to_vec().into() }, vec![child])
+    Tree::new(
+        NodeKind::Attribute {
+            name: name.into(),
+            value: values.to_vec().into(),
+            precedence: Precedence::Nearest,
+        },
+        vec![child],
+    )
 }
 
 fn group(name: &str, width: usize) -> AttributeGroup {
@@ -283,7 +289,11 @@ fn an_unbounded_box_stays_a_box() {
 
 #[test]
 fn a_node_has_the_name_of_its_group_and_no_copy() {
-    let attribute = NodeKind::Attribute { name: "color".into(), value: vec![0.0; 3].into() };
+    let attribute = NodeKind::Attribute {
+        name: "color".into(),
+        value: vec![0.0; 3].into(),
+        precedence: Precedence::Nearest,
+    };
     let tree = Tree::new(attribute, vec![point(0.0)]);
     let checked = Model::new(tree).check().unwrap();
     let NodeKind::Attribute { name: kept, .. } = &checked.node(checked.root()).kind else {

@@ -264,6 +264,6 @@ pub(super) fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Ext
         NodeKind::Affine(map) => children[0].map(|bounds| affine::map_bounds(map, bounds)),
         NodeKind::Warp(_) if children.len() > 1 => children[0].weighted(&children[1]),
         NodeKind::Warp(warp) => children[0].map(|bounds| warp.forward_bounds(bounds)),
-        NodeKind::Attribute { .. } => children[0],
+        NodeKind::Attribute { .. } | NodeKind::Constant { .. } => children[0],
     }
 }

@@ -60,9 +60,10 @@ fn foreseen(nodes: &[CheckedNode], iso: f64, own: impl Fn(&NodeKind, Bounds) -> 
         let extent = node_extent(&node.kind, &extents, iso);
         // Nothing is evaluated where an operator is 0, and a map changes no part of a box.
         let parts = match node.kind {
-            NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
-                node.children.iter().map(|id| of(id).1).sum::<f64>()
-            }
+            NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => node.children.iter().map(|id| of(id).1).sum::<f64>(),
             NodeKind::Primitive(_)
             | NodeKind::Particles(_)
             | NodeKind::Combine(_)
@@ -90,7 +91,8 @@ fn whole(kind: &NodeKind) -> f64 {
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => 0.0,
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => 0.0,
     }
 }
 

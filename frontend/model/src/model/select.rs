@@ -107,7 +107,8 @@ fn only(node: &Tree, left: Vec<Left>) -> Left {
         Written::Primitive { .. }
         | Written::Particles(_)
         | Written::Map { .. }
-        | Written::Attribute { .. } => node.with_children(vec![first]),
+        | Written::Attribute { .. }
+        | Written::Constant { .. } => node.with_children(vec![first]),
         Written::Warp { .. } | Written::FormulaWarp(_) => match children[0].take() {
             Some(child) => {
                 node.with_children([child].into_iter().chain(whole[1..].iter().cloned()).collect())
@@ -140,7 +141,11 @@ fn without(node: &Tree, left: Vec<Left>) -> Left {
         left.into_iter().zip(whole).map(|(left, whole)| left.tree(whole)).collect();
     let rest = match node.node().written() {
         Written::Primitive { .. } | Written::Particles(_) => return Left::All,
-        Written::Map { .. } | Written::Attribute { .. } | Written::Warp { .. } | Written::FormulaWarp(_) => {
+        Written::Map { .. }
+        | Written::Attribute { .. }
+        | Written::Constant { .. }
+        | Written::Warp { .. }
+        | Written::FormulaWarp(_) => {
             if children[0].is_none() {
                 Vec::new()
             } else {

@@ -2,7 +2,6 @@
 
 use super::field::{FieldNumber, as_written};
 use crate::attribute::{AttributeValue, Textured, UvMap};
-use crate::constant::LeafConstant;
 use crate::expression::Formula;
 use crate::number::{Number, values};
 use crate::texture::TextureKind;
@@ -18,8 +17,6 @@ pub enum WrittenAttribute {
     Uv(WrittenUv),
     /// A formula with one value for each channel.
     Expressed(Formula),
-    /// What leaves are of, which belongs to no group.
-    Constant(LeafConstant),
 }
 
 /// A mixture of two values by a texture.
@@ -73,7 +70,6 @@ impl From<&AttributeValue> for WrittenAttribute {
             }),
             AttributeValue::Uv(map) => Self::Uv((*map).into()),
             AttributeValue::Expressed(expression) => Self::Expressed(expression.into()),
-            AttributeValue::Constant(value) => Self::Constant(value.clone()),
         }
     }
 }
@@ -96,7 +92,6 @@ impl WrittenAttribute {
                 shift: values(shift),
             }),
             Self::Expressed(formula) => AttributeValue::Expressed(formula.expression()),
-            Self::Constant(value) => AttributeValue::Constant(value.clone()),
         }
     }
 
@@ -109,7 +104,6 @@ impl WrittenAttribute {
                 (&[], [scale, std::slice::from_ref(degrees), shift])
             }
             Self::Expressed(formula) => (&[], [&formula.numbers, &[], &[]]),
-            Self::Constant(_) => (&[], [&[], &[], &[]]),
         };
         fields.iter().flat_map(FieldNumber::numbers).chain(numbers.into_iter().flatten())
     }
@@ -125,7 +119,6 @@ impl WrittenAttribute {
                 scale.iter_mut().chain([degrees]).chain(shift).collect()
             }
             Self::Expressed(formula) => formula.numbers.iter_mut().collect(),
-            Self::Constant(_) => Vec::new(),
         }
     }
 }

@@ -19,7 +19,10 @@ impl From<NodeKind> for Written {
             NodeKind::Select(which) => Self::Select(which.into()),
             NodeKind::Affine(map) => map.into(),
             NodeKind::Warp(warp) => warp.into(),
-            NodeKind::Attribute { name, value } => Self::Attribute { name, value: (&value).into() },
+            NodeKind::Attribute { name, value, precedence } => {
+                Self::Attribute { name, value: (&value).into(), precedence }
+            }
+            NodeKind::Constant { name, value, precedence } => Self::Constant { name, value, precedence },
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Nodes as Rust: constructors and methods of the builder.
 
+use jbt_model::attribute::Precedence;
 use jbt_model::combine::CombinatorKind;
 use jbt_model::constant::LeafConstant;
 use jbt_model::falloff::FalloffKind;
@@ -79,9 +80,16 @@ impl RustBody {
                 let values = list(self.formula(formula, &|_| nothing.text.clone()));
                 weighted(format!("{}.warp({values})", child.text), children)
             }
-            Written::Attribute { name, value } => {
+            Written::Attribute { name, value, precedence } => {
                 let text = self.attribute(name, value);
-                format!("{}.{text}", child.text)
+                format!("{}.{text}{}", child.text, overriding(*precedence))
+            }
+            Written::Constant { name, value, precedence } => {
+                let value = match value {
+                    LeafConstant::Whole(number) => format!("{number}_i64"),
+                    LeafConstant::Text(text) => format!("{text:?}"),
+                };
+                format!("{}.constant({name:?}, {value}){}", child.text, overriding(*precedence))
             }
         }
     }
@@ -169,10 +177,6 @@ impl RustBody {
                 let values = list(self.formula(formula, &|_| "Tree::empty()".to_owned()));
                 format!("expressed({name:?}, {values})")
             }
-            WrittenAttribute::Constant(LeafConstant::Whole(number)) => {
-                format!("constant({name:?}, {number}_i64)")
-            }
-            WrittenAttribute::Constant(LeafConstant::Text(text)) => format!("constant({name:?}, {text:?})"),
         }
     }
 
@@ -195,6 +199,14 @@ impl RustBody {
             text.push_str(&format!(".values({name:?}, {width}, {})", array(numbers)));
         }
         text
+    }
+}
+
+/// What stands behind an attribute or a constant that overrides.
+const fn overriding(precedence: Precedence) -> &'static str {
+    match precedence {
+        Precedence::Nearest => "",
+        Precedence::Override => ".overriding()",
     }
 }
 
@@ -228,6 +240,7 @@ pub(super) fn is_operator(tree: &Tree) -> bool {
         | Written::Map { .. }
         | Written::Warp { .. }
         | Written::FormulaWarp(_)
-        | Written::Attribute { .. } => false,
+        | Written::Attribute { .. }
+        | Written::Constant { .. } => false,
     }
 }

@@ -199,6 +199,20 @@ fn colours_belong_to_regions_and_to_what_is_above() {
         combination("top", &[("color", "0/255/0"), ("inherit", "1")], &[("r", None)], &[]),
     ]);
     assert_eq!(color(&bytes, PLACES[0]), green);
+    // What is inherited is the colour and the shader: regions below keep their numbers.
+    let numbered = combination(
+        "r",
+        &[("region", "R"), ("region_id", "7"), ("color", "255/0/0"), ("oshader", "plastic")],
+        &[("part", None)],
+        &[],
+    );
+    let above = [("color", "0/255/0"), ("inherit", "1"), ("oshader", "glass")];
+    let bytes =
+        file([ball("a", 0.0), part.clone(), numbered, combination("top", &above, &[("r", None)], &[])]);
+    assert_eq!(color(&bytes, PLACES[0]), green);
+    let constants = read(&bytes, &of("top")).model.check().unwrap().constants();
+    let told: Vec<_> = constants.iter().map(|one| format!("{} {:?}", one.name, one.values)).collect();
+    assert_eq!(told, ["region_id [Whole(7)]", "shader [Text(\"glass\")]"]);
     // Without a region the lowest colour counts.
     let bytes =
         file([ball("a", 0.0), part, combination("top", &[("color", "0/255/0")], &[("part", None)], &[])]);

@@ -1,8 +1,7 @@
 //! From objects to a tree: each object once, a use of it under the matrix of the use.
 //!
 //! An object has a tree with the colours of its regions, and one without colours where something above has
-//! decided: below a region, below a colour that is inherited, and in what is subtracted, which shows the
-//! colour of what it is subtracted from.
+//! decided: below a region, and in what is subtracted, which shows the colour of what it is subtracted from.
 
 use std::collections::{HashMap, HashSet};
 
@@ -210,7 +209,7 @@ impl TreeBuilder<'_, '_> {
         let (span, properties) = (entry.span, entry.properties.clone());
         let built = match &entry.content {
             ObjectContent::Combination(made) => {
-                let members = members(self.database, made, is_plain || is_decided(&properties));
+                let members = members(self.database, made, is_plain || properties.is_region);
                 tasks.push(BuildTask::Leave { object, is_plain });
                 self.states[object as usize][usize::from(is_plain)] = ObjectState::Open;
                 self.path.push(object);
@@ -259,7 +258,7 @@ impl TreeBuilder<'_, '_> {
         let entry = &self.database.objects[object as usize];
         let (span, properties) = (entry.span, entry.properties.clone());
         let ObjectContent::Combination(made) = &entry.content else { return Some(Built::MISSING) };
-        let below = members(self.database, made, is_plain || is_decided(&properties));
+        let below = members(self.database, made, is_plain || properties.is_region);
         let mut operands = Vec::with_capacity(below.len());
         let mut has_radius = false;
         let mut problems = Vec::new();
@@ -302,7 +301,7 @@ impl TreeBuilder<'_, '_> {
         let own = if is_plain { None } else { self.color(&properties) };
         let color = own.or(set.color);
         let part = set.part(span).map(|part| match own {
-            Some(own) => SetPart { tree: colored(part.tree, own, span), ..part },
+            Some(own) => SetPart { tree: colored(part.tree, own, properties.of_looks(), span), ..part },
             None => part,
         });
         let constants = properties.constants().filter(|_| !is_plain);
@@ -405,11 +404,6 @@ impl TreeBuilder<'_, '_> {
             });
         }
     }
-}
-
-/// Whether everything below has the colour of this combination, or of what is above.
-fn is_decided(properties: &Properties) -> bool {
-    properties.is_region || (properties.inherits && properties.color.is_some())
 }
 
 /// The members of a combination: the object, if there is one, its name, and whether it is built without

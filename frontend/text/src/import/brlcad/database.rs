@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use jbt_ir::limits::MAX_NODES;
+use jbt_model::attribute::Precedence;
 use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::{Report, clip};
@@ -54,7 +55,7 @@ pub(super) struct Properties {
     pub(super) is_region: bool,
     /// Its colour, as screens have it.
     pub(super) color: Option<[u8; 3]>,
-    /// Whether its colour holds for everything below.
+    /// Whether its colour and its shader hold for everything below.
     pub(super) inherits: bool,
     /// The number of a region.
     pub(super) region: Option<i64>,
@@ -239,8 +240,13 @@ impl Properties {
         self.color.is_some() || self.constants().next().is_some()
     }
 
+    /// Which of several colours or shaders on the way down counts.
+    pub(super) fn of_looks(&self) -> Precedence {
+        if self.inherits { Precedence::Override } else { Precedence::Nearest }
+    }
+
     /// The constants of the solids below. Numbers count for regions alone.
-    pub(super) fn constants(&self) -> impl Iterator<Item = (&'static str, LeafConstant)> {
+    pub(super) fn constants(&self) -> impl Iterator<Item = (&'static str, LeafConstant, Precedence)> {
         let fits = |number: &i64| number.unsigned_abs() <= LARGEST_CONSTANT.unsigned_abs();
         let numbers = [
             ("region_id", self.region),
@@ -248,11 +254,12 @@ impl Properties {
             ("material_id", self.material),
         ];
         let numbers = numbers.into_iter().filter(|_| self.is_region);
-        let numbers =
-            numbers.filter_map(move |(name, number)| Some((name, LeafConstant::Whole(number.filter(fits)?))));
+        let numbers = numbers
+            .filter_map(move |(name, number)| Some((name, number.filter(fits)?.into(), Precedence::Nearest)));
         let material = self.material_name.clone().filter(|_| self.is_region);
-        let texts = [("material", material), ("shader", self.shader.clone())];
-        numbers.chain(texts.into_iter().filter_map(|(name, text)| Some((name, LeafConstant::Text(text?)))))
+        let texts =
+            [("material", material, Precedence::Nearest), ("shader", self.shader.clone(), self.of_looks())];
+        numbers.chain(texts.into_iter().filter_map(|(name, text, how)| Some((name, text?.into(), how))))
     }
 }
 

@@ -11,7 +11,7 @@
 
 use std::collections::VecDeque;
 
-use jbt_model::attribute::AttributeValue;
+use jbt_model::attribute::Precedence;
 use jbt_model::bounds::Bounds;
 use jbt_model::combine::{Combinator, Complement};
 use jbt_model::constant::LeafConstant;
@@ -166,7 +166,7 @@ impl PointSet {
             _ => other.part(span).into_iter().collect(),
         };
         let cuts = cuts.into_iter().map(|cut| match color {
-            Some(color) => SetPart { tree: colored(cut.tree, color, span), ..cut },
+            Some(color) => SetPart { tree: colored(cut.tree, color, Precedence::Nearest, span), ..cut },
             None => cut,
         });
         let cuts: Vec<SetPart> = cuts.collect();
@@ -274,14 +274,18 @@ fn copied(tree: &Tree) -> Tree {
 }
 
 /// A tree in a colour, which screens have in these bytes.
-pub(super) fn colored(tree: Tree, color: [u8; 3], span: Span) -> Tree {
+pub(super) fn colored(tree: Tree, color: [u8; 3], precedence: Precedence, span: Span) -> Tree {
     let values = color.map(|byte| linear(&Number::from(f64::from(byte) / 255.0)).value());
-    let kind = NodeKind::Attribute { name: "color".into(), value: values.to_vec().into() };
+    let kind = NodeKind::Attribute { name: "color".into(), value: values.to_vec().into(), precedence };
     Tree::at(span, kind, vec![tree])
 }
 
 /// A part whose leaves have a constant.
-pub(super) fn with_constant(part: SetPart, (name, value): (&str, LeafConstant), span: Span) -> SetPart {
-    let kind = NodeKind::Attribute { name: name.into(), value: AttributeValue::Constant(value) };
+pub(super) fn with_constant(
+    part: SetPart,
+    (name, value, precedence): (&str, LeafConstant, Precedence),
+    span: Span,
+) -> SetPart {
+    let kind = NodeKind::Constant { name: name.into(), value, precedence };
     SetPart { tree: Tree::at(span, kind, vec![part.tree]), ..part }
 }

@@ -39,6 +39,7 @@ use self::scan::{Key, Section};
 use self::state::{Importer, Meaning, NodeState};
 use super::Imported;
 use super::format::{SceneFormatRow, first_line};
+use jbt_model::attribute::Precedence;
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::kind::NodeKind;
@@ -281,7 +282,11 @@ fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<T
             match color {
                 None => tree,
                 Some(color) => {
-                    let kind = NodeKind::Attribute { name: "color".into(), value: color.to_vec().into() };
+                    let kind = NodeKind::Attribute {
+                        name: "color".into(),
+                        value: color.to_vec().into(),
+                        precedence: Precedence::Nearest,
+                    };
                     Tree::at(span, kind, vec![tree])
                 }
             }
