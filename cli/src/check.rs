@@ -86,7 +86,7 @@ fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Resu
         return Err(scene.failure(why));
     }
     let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
-    let instances = scene.evaluator(&compiled, query)?.evaluations_per_point();
+    let instances = compiled.evaluations_per_point(query).map_err(|error| scene.failure(&error))?;
     let too_large = COMMANDS.into_iter();
     let too_large = too_large.filter_map(|(name, task)| Some((name, in_a_line(why(task)?)))).collect();
     let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);

@@ -1,15 +1,15 @@
 //! `cost`: microseconds for each IR value, from text to running code, of models that mean well and of others.
 //!
 //! ```text
-//! cargo run --release -p jbt-benches --bin cost [-- PART]
+//! cargo run --release -p jbt-benches --bin cost [-- PART [LEVEL]]
 //! ```
 //!
 //! Each model is read, checked, lowered, and taken through all passes to machine code, for its field, for all
 //! answers and for ranges. A row tells the values of the longest function on the way (and the rows of its
 //! tables, each of which counts as one), the time of each stage in ms, and what is beyond a millisecond for each
 //! value, in us. Stages that take part of several programs (text, check, shapes) count to each. What is beyond a
-//! limit ends with the stage that says so. Of PART only models whose name has it are measured. A row is the
-//! fastest of three runs; a `!` stands behind what takes more than 15 us a value.
+//! limit ends with the stage that says so. Only models whose name has PART are measured. LEVEL is that of the
+//! machine code, the best as a rule: `baseline` is Cranelift's. A row is the fastest of three runs; a `!` stands behind what takes more than 15 us a value.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fmt::Write as _;
@@ -57,7 +57,7 @@ fn models() -> Vec<(&'static str, String)> {
     let moved = "sum { LAST translate (0.1 0 0) { LAST } }";
     let warped = "sum { twist axis z rate 0.1 { LAST } translate (0.1 0 0) { LAST } }";
     let kinds = ["point { RADIUS }", "segment { to (0 0 1) RADIUS }", "disk { size 1 RADIUS }"];
-    let falloffs = ["wyvill", "gaussian", "soft"];
+    let falloffs = ["wyvill", "blinn { hardness 3 cutoff 1 edge smooth }", "soft"];
     let mixed = |count: usize| {
         let part = |at: usize| {
             let radius = format!("radius {} falloff {}", 1 + at % 7, falloffs[at % falloffs.len()]);
@@ -139,7 +139,7 @@ const PROGRAMS: [(&str, Purpose); 3] = [
     ("ranges", Purpose::Ranges),
 ];
 
-fn program(text: &str, purpose: Purpose) -> Program {
+fn program(text: &str, purpose: Purpose, level: Level) -> Program {
     let mut times = Times::default();
     let refused = |times, stage: &str, units| Program { times, units, end: format!("refused: {stage}") };
     let read = times.time("read", || jbt::text::parse(text.as_bytes(), &jbt::text::Options::default()));
@@ -166,7 +166,6 @@ fn program(text: &str, purpose: Purpose) -> Program {
     }
     let verified = times.time("verify", || verify(function)).expect("passes keep the rules");
     let verified = Arc::new(verified);
-    let level = Level::best();
     let backend = choose(Engine::Jit.backends(), level).expect("machine code is built in");
     let end = match times.time("code", || backend.compile(&verified, level)) {
         Ok(_) => "code".to_owned(),
@@ -180,12 +179,14 @@ fn program(text: &str, purpose: Purpose) -> Program {
 }
 
 fn main() {
-    let part = std::env::args().nth(1).unwrap_or_default();
+    let mut arguments = std::env::args().skip(1);
+    let part = arguments.next().unwrap_or_default();
+    let level = arguments.next().map_or_else(Level::best, |name| name.parse().expect("a level"));
     println!("{:30} {:7} {:>9} {:>9} {:>9}  stages in ms", "model", "program", "units", "ms", "us/unit");
     for (name, text) in models().into_iter().filter(|(name, _)| name.contains(&part)) {
         let text = format!("jbt 1\n{text}\n");
         for (what, purpose) in PROGRAMS {
-            let runs = (0..RUNS).map(|_| program(&text, purpose));
+            let runs = (0..RUNS).map(|_| program(&text, purpose, level));
             let Program { times, units, end } =
                 runs.min_by_key(|run| run.times.total()).expect("there are several runs");
             let total = times.total().as_secs_f64() * 1e6;

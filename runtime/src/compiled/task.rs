@@ -1,7 +1,9 @@
 //! What is done with a model, and the programs that it takes: the one list of both.
 
+use jbt_ir::domain::counting::{evaluations_per_row, of_selection};
 use jbt_ir::limits::MAX_VALUES;
-use jbt_lower::Lowering;
+use jbt_ir::{Selection, pass};
+use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedNode;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::kind::NodeKind;
@@ -94,6 +96,21 @@ impl Compiled {
                 }
             }
             Ok(refused)
+        })?
+    }
+
+    /// How many distances to skeletons one point takes that is asked a query, with all rows. No code is made:
+    /// what passes save is saved, and what they make longer stays as short as it is.
+    ///
+    /// # Errors
+    /// What lowering says.
+    pub fn evaluations_per_point(&self, query: Query) -> Result<u64, CompileError> {
+        jbt_ir::watch::stoppable(|| {
+            let Lowered { function, tables } = self.lowered(None, |lowering| lowering.answers(query))?;
+            let shorter = [pass::fold_constants, pass::simplify, pass::share, pass::dce];
+            let function = shorter.iter().fold(function, |function, pass| pass(&function));
+            let all = Selection::new(&function, &tables);
+            Ok(of_selection(&evaluations_per_row(&function), &all))
         })?
     }
 
