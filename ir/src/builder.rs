@@ -34,7 +34,7 @@ use crate::op::{Domain, Op, Type};
 use crate::origin::{Origin, Part};
 use crate::watch::look;
 
-use known::{Key, Known};
+use known::{Key, KnownInsts};
 
 /// What is known of a value while its function is written.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ struct OpenBlock {
 pub struct FunctionBuilder {
     function: Function,
     open: Vec<OpenBlock>,
-    known: Known,
+    known: KnownInsts,
     values: Vec<KnownValue>,
     /// By type, what stands for more values than a function may have.
     stand_ins: [Option<Value>; Type::ALL.len()],
@@ -85,7 +85,7 @@ impl FunctionBuilder {
         Self {
             function,
             open,
-            known: Known::default(),
+            known: KnownInsts::default(),
             values: Vec::new(),
             stand_ins: [None; Type::ALL.len()],
             origin: Origin::SHARED,

@@ -6,10 +6,13 @@
 //!
 //! Each model is read, checked, lowered, and taken through all passes to machine code, for its field, for all
 //! answers and for ranges. A row tells the values of the longest function on the way (and the rows of its
-//! tables, each of which counts as one), the time of each stage in ms, and what is beyond a millisecond for each
-//! value, in us. Stages that take part of several programs (text, check, shapes) count to each. What is beyond a
-//! limit ends with the stage that says so. Only models whose name has PART are measured. LEVEL is that of the
-//! machine code, the best as a rule: `baseline` is Cranelift's. A row is the fastest of three runs; a `!` stands behind what takes more than 15 us a value.
+//! tables, each of which counts as one), the time of each stage in ms, and what is beyond a millisecond for
+//! each value, in us. Stages that take part of several programs (text, check, shapes) count to each. What is
+//! beyond a limit ends with the stage that says so.
+//!
+//! Only models whose name has PART are measured. LEVEL is that of the machine code, the best as a rule:
+//! `baseline` is Cranelift's. A row is the fastest of three runs; a `!` stands behind what takes more than
+//! 15 us a value.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fmt::Write as _;
@@ -121,7 +124,7 @@ impl Times {
 }
 
 /// What became of a program.
-struct Program {
+struct ProgramCost {
     times: Times,
     /// Values of the longest function, and rows.
     units: usize,
@@ -139,9 +142,9 @@ const PROGRAMS: [(&str, Purpose); 3] = [
     ("ranges", Purpose::Ranges),
 ];
 
-fn program(text: &str, purpose: Purpose, level: Level) -> Program {
+fn program(text: &str, purpose: Purpose, level: Level) -> ProgramCost {
     let mut times = Times::default();
-    let refused = |times, stage: &str, units| Program { times, units, end: format!("refused: {stage}") };
+    let refused = |times, stage: &str, units| ProgramCost { times, units, end: format!("refused: {stage}") };
     let read = times.time("read", || jbt::text::parse(text.as_bytes(), &jbt::text::Options::default()));
     let Ok(model) = read else { return refused(times, "read", 0) };
     let Ok(tree) = times.time("check", || model.check()) else { return refused(times, "check", 0) };
@@ -175,7 +178,7 @@ fn program(text: &str, purpose: Purpose, level: Level) -> Program {
             "tape".to_owned()
         }
     };
-    Program { times, units, end }
+    ProgramCost { times, units, end }
 }
 
 fn main() {
@@ -187,7 +190,7 @@ fn main() {
         let text = format!("jbt 1\n{text}\n");
         for (what, purpose) in PROGRAMS {
             let runs = (0..RUNS).map(|_| program(&text, purpose, level));
-            let Program { times, units, end } =
+            let ProgramCost { times, units, end } =
                 runs.min_by_key(|run| run.times.total()).expect("there are several runs");
             let total = times.total().as_secs_f64() * 1e6;
             let each = (total - FREE).max(0.0) / units.max(1) as f64;
