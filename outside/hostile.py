@@ -39,10 +39,6 @@ LOCATED = re.compile(
     r":\d+:\d+: (error|limit): |: byte \d+: |error: .*\bbyte \d+|error: (point|.*\bof particle) \d+"
     r"|error: (there are no points|the file (names no root|has no lines|has no solid)|\d+ bytes, which are neither text nor points)"
 )
-# What `check` says of a scene may take long to find out: it looks for what each command would say of it, with all passes
-# over the program, whose size is bounded (`limits::MAX_VALUES`).
-LARGE = {("rib", "a sum of 100,000"), ("jbt", "an expression"), ("jbt", "twists")}
-LARGE_SECONDS, LARGE_MEGABYTES = 15.0, 1500
 
 
 def npy():
@@ -490,8 +486,7 @@ def main():
                 for command in asked:
                     code, message, seconds, memory = launcher.submit(took, [jbt, *command, *options, f"f.{form}"], folder).result()
                     fault = faults(code, message)
-                    is_large = (form, name) in LARGE
-                    if seconds > (LARGE_SECONDS if is_large else SECONDS) or memory > (LARGE_MEGABYTES if is_large else MEGABYTES):
+                    if seconds > SECONDS or memory > MEGABYTES:
                         fault = fault or f"{seconds:.2f} s, {memory:.0f} MB"
                     if fault:
                         wrong += 1

@@ -8,7 +8,9 @@ use jbt::diagnostic::escape;
 use jbt::export::constant_json;
 use jbt::tree::Bounds;
 use jbt::tree::{ConstantValues, LeafConstant, NodeKind};
-use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Parameter, Query, Task};
+use jbt::{
+    AttributeGroup, CheckedTree, Classified as _, CompileError, Compiler, Engine, Parameter, Query, Task,
+};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};
@@ -85,12 +87,20 @@ fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Resu
         return Err(scene.failure(why));
     }
     let query = if why(Task::Points(Query::ALL)).is_some() { Query::FIELD } else { Query::ALL };
-    let instances = scene.evaluator(&compiled, query)?.evaluations_per_point();
+    let instances = compiled.evaluations_per_point(query).map_err(|error| scene.failure(&error))?;
     let too_large = COMMANDS.into_iter();
-    let too_large = too_large.filter_map(|(name, task)| Some((name, why(task)?.to_string()))).collect();
+    let too_large = too_large.filter_map(|(name, task)| Some((name, in_a_line(why(task)?)))).collect();
     let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
     let parts = arguments.overlaps.then(compare).transpose()?;
     Ok(Checked { scene, tree, instances, parts, too_large })
+}
+
+/// Why a command is refused, without the line of the scene, which the command shows.
+fn in_a_line(why: &CompileError) -> String {
+    match why.diagnostics().and_then(|told| told.iter().next()) {
+        Some(first) => format!("limit: {}", first.message),
+        None => why.to_string(),
+    }
 }
 
 /// What has been found out about the files so far.

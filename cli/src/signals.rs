@@ -97,14 +97,16 @@ mod on_unix {
     use super::*;
 
     /// How long the work has to come to a hook. Nothing is lost if it does not.
-    const PATIENCE: Duration = Duration::from_millis(300);
+    const PATIENCE: Duration = Duration::from_millis(40);
 
     /// Listens to signals from now on. Where that cannot be had they do what they do to any program.
     pub fn install() {
         begun().reserve(FILES);
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
         // `nohup` and shells without job control have programs ignore a signal that is not meant for them.
-        let heard: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&one| !is_ignored(one)).collect();
+        let ignored = ignored();
+        let is_heard = |signal: &i32| ignored >> (signal - 1) & 1 == 0;
+        let heard: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(is_heard).collect();
         let Ok(mut signals) = Signals::new(heard) else { return };
         let listen = move || {
             let Some(signal) = signals.forever().next() else { return };
@@ -128,12 +130,11 @@ mod on_unix {
         }
     }
 
-    /// Whether the process was started with a signal ignored.
-    fn is_ignored(signal: i32) -> bool {
+    /// The signals that the process was started with ignored: the lowest bit is that of signal 1.
+    fn ignored() -> u64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
-        mask >> (signal - 1) & 1 == 1
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
     }
 
     /// What people call a signal.

@@ -22,25 +22,31 @@
 //! verify(b.finish(&[("sum".to_owned(), sum)])).unwrap();
 //! ```
 
+mod known;
+
 use std::fmt;
 use std::sync::Arc;
 
-use rustc_hash::FxHashMap as HashMap;
-
 use crate::entity::{Block, Entity, Inst, Table, Value, Values};
 use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
+use crate::limits::MAX_VALUES;
 use crate::op::{Domain, Op, Type};
 use crate::origin::{Origin, Part};
 use crate::watch::look;
 
-/// What makes two instructions the same.
-#[derive(Clone, PartialEq, Eq, Hash)]
-enum Key {
-    Input(usize),
-    Constant(u32),
-    BitsConstant(u32),
-    Column(Table, usize),
-    Op(Op, [Option<Value>; 3]),
+use known::{Key, KnownInsts};
+
+/// What is known of a value while its function is written.
+#[derive(Clone, Copy)]
+struct KnownValue {
+    /// How many blocks enclose its definition: 0 is the function's body.
+    depth: u32,
+    /// The block that it is defined in: it is seen while that is open.
+    block: Block,
+    /// The instruction that defines it; accumulators have none.
+    definition: Option<Inst>,
+    /// Whether it is the same at all points of a row.
+    uniform: bool,
 }
 
 /// A block that is still being written.
@@ -48,21 +54,16 @@ struct OpenBlock {
     block: Block,
     /// The table of its fold; `None` for the function's body.
     fold: Option<(Table, (FoldKind, Rule), Values)>,
-    /// What can be found while this block is open.
-    known: Vec<Key>,
 }
 
 /// Writes a [`Function`]. See the module for the idea.
 pub struct FunctionBuilder {
     function: Function,
     open: Vec<OpenBlock>,
-    known: HashMap<Key, Value>,
-    /// For each value, how many blocks enclose its definition: 0 is the function's body.
-    depth: Vec<usize>,
-    /// For each value, the instruction that defines it; accumulators have none.
-    definition: Vec<Option<Inst>>,
-    /// For each value, whether it is the same at all points of a row.
-    uniform: Vec<bool>,
+    known: KnownInsts,
+    values: Vec<KnownValue>,
+    /// By type, what stands for more values than a function may have.
+    stand_ins: [Option<Value>; Type::ALL.len()],
     origin: Origin,
     /// Whether equal instructions are shared, and hoisted.
     shares: bool,
@@ -80,14 +81,13 @@ impl FunctionBuilder {
     #[must_use]
     pub fn new(name: &str, inputs: &[&str]) -> Self {
         let function = Function::new(name, inputs);
-        let open = vec![OpenBlock { block: function.body, fold: None, known: Vec::new() }];
+        let open = vec![OpenBlock { block: function.body, fold: None }];
         Self {
             function,
             open,
-            known: HashMap::default(),
-            depth: Vec::new(),
-            definition: Vec::new(),
-            uniform: Vec::new(),
+            known: KnownInsts::default(),
+            values: Vec::new(),
+            stand_ins: [None; Type::ALL.len()],
             origin: Origin::SHARED,
             shares: true,
         }
@@ -97,7 +97,7 @@ impl FunctionBuilder {
     #[must_use]
     pub fn like(function: &Function) -> Self {
         let mut builder = Self { shares: true, ..Self::verbatim(function) };
-        builder.known.reserve(function.insts.len());
+        builder.known.reserve(function.insts.len(), |_| None);
         builder
     }
 
@@ -112,9 +112,7 @@ impl FunctionBuilder {
         let count = function.values.len();
         builder.function.values.reserve(count);
         builder.function.insts.reserve(function.insts.len());
-        builder.depth.reserve(count);
-        builder.definition.reserve(count);
-        builder.uniform.reserve(count);
+        builder.values.reserve(count);
         builder.shares = false;
         builder
     }
@@ -155,7 +153,7 @@ impl FunctionBuilder {
 
     /// Changes the origin of the instruction that defines `value`.
     pub fn mark(&mut self, value: Value, origin: Origin) {
-        if let Some(inst) = self.definition[value.index()] {
+        if let Some(inst) = self.values[value.index()].definition {
             self.function.insts[inst].origin = origin;
         }
     }
@@ -174,6 +172,14 @@ impl FunctionBuilder {
         &self.function
     }
 
+    /// Whether the function has more values than any may have. What is written then stands for nothing: the
+    /// next value of a type is the first one of that type again, so that whoever writes comes to an end in
+    /// little time and memory, and whoever asks for the function counts its values.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.function.values.len() > MAX_VALUES
+    }
+
     /// How many folds are open.
     #[must_use]
     pub fn fold_depth(&self) -> usize {
@@ -183,13 +189,13 @@ impl FunctionBuilder {
     /// What computes the value; `None` for an accumulator, which its block binds.
     #[must_use]
     pub fn definition(&self, value: Value) -> Option<&InstKind> {
-        Some(&self.function.insts[self.definition[value.index()]?].kind)
+        Some(&self.function.insts[self.values[value.index()].definition?].kind)
     }
 
     /// The number, if the value is a constant.
     #[must_use]
     pub fn as_constant(&self, value: Value) -> Option<f32> {
-        match self.function.insts[self.definition[value.index()]?].kind {
+        match self.function.insts[self.values[value.index()].definition?].kind {
             InstKind::Constant(number) => Some(number),
             InstKind::Input(_)
             | InstKind::BitsConstant(_)
@@ -203,12 +209,12 @@ impl FunctionBuilder {
     /// Engines compute it once for a row.
     #[must_use]
     pub fn is_uniform(&self, value: Value) -> bool {
-        self.uniform[value.index()]
+        self.values[value.index()].uniform
     }
 
     /// An input plane.
     pub fn input(&mut self, index: usize) -> Value {
-        self.insert(Key::Input(index), 0, InstKind::Input(index), Type::Real)
+        self.insert(0, InstKind::Input(index))
     }
 
     /// A column of the current row of a table, whose fold must be open.
@@ -218,29 +224,24 @@ impl FunctionBuilder {
             .iter()
             .rposition(|open| open.fold.as_ref().is_some_and(|(of, ..)| *of == table))
             .expect("a column is read inside the fold over its table");
-        self.insert(Key::Column(table, column), depth, InstKind::Column { table, column }, Type::Real)
+        self.insert(depth, InstKind::Column { table, column })
     }
 
     /// Any op.
     pub fn op(&mut self, op: Op, args: &[Value]) -> Value {
-        let mut key = [None; 3];
-        for (place, &arg) in key.iter_mut().zip(args) {
-            *place = Some(arg);
-        }
-        let depth = args.iter().map(|arg| self.depth[arg.index()]).max().unwrap_or(0);
-        self.insert(Key::Op(op, key), depth, InstKind::Op { op, args: args.into() }, op.result())
+        let depth = args.iter().map(|arg| self.values[arg.index()].depth).max().unwrap_or(0);
+        self.insert(depth as usize, InstKind::Op { op, args: args.into() })
     }
 
     /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to
     /// [`end_fold`](Self::end_fold).
     pub fn begin_fold(&mut self, table: Table, kind: (FoldKind, Rule), initial: &[Value]) -> Vec<Value> {
-        let depth = self.open.len();
+        let block = self.function.blocks.push(BlockData::default());
+        self.open.push(OpenBlock { block, fold: Some((table, kind, initial.into())) });
+        let depth = self.open.len() - 1;
         let params: Vec<Value> =
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
-        let block =
-            self.function.blocks.push(BlockData { params: params.as_slice().into(), ..BlockData::default() });
-        let fold = Some((table, kind, initial.into()));
-        self.open.push(OpenBlock { block, fold, known: Vec::new() });
+        self.function.blocks[block].params = params.as_slice().into();
         params
     }
 
@@ -258,9 +259,6 @@ impl FunctionBuilder {
     /// Closes the innermost fold with the next accumulators, and returns the final ones.
     pub fn end_fold(&mut self, next: &[Value]) -> Vec<Value> {
         let open = self.open.pop().expect("begin_fold came first");
-        for key in open.known {
-            self.known.remove(&key);
-        }
         let (table, (kind, rule), initial) = open.fold.expect("begin_fold came first");
         let depth = self.open.len() - 1;
         let results: Vec<Value> =
@@ -282,41 +280,51 @@ impl FunctionBuilder {
     }
 
     fn new_value(&mut self, type_: Type, depth: usize) -> Value {
-        self.depth.push(depth);
-        self.definition.push(None);
-        self.uniform.push(false);
-        self.function.values.push(type_)
+        let block = self.open[depth].block;
+        self.values.push(KnownValue { depth: depth as u32, block, definition: None, uniform: false });
+        let value = self.function.values.push(type_);
+        self.stand_ins[type_ as usize].get_or_insert(value);
+        value
     }
 
     fn append(&mut self, depth: usize, kind: InstKind, results: Values) -> Inst {
         let definition = self.function.insts.next_key();
         for result in &results {
-            self.definition[result.index()] = Some(definition);
+            self.values[result.index()].definition = Some(definition);
         }
         let inst = self.function.insts.push(InstData { kind, results, origin: self.origin });
         self.function.blocks[self.open[depth].block].insts.push(inst);
         inst
     }
 
-    fn insert(&mut self, key: Key, depth: usize, kind: InstKind, type_: Type) -> Value {
+    fn insert(&mut self, depth: usize, kind: InstKind) -> Value {
         look();
+        let type_ = kind.result_type();
+        if let Some(value) = self.stand_ins[type_ as usize].filter(|_| self.is_full()) {
+            return value;
+        }
+        let depth = depth.min(self.open.len() - 1);
         if !self.shares {
             let value = self.new_value(type_, depth);
             self.append(self.open.len() - 1, kind, Values::from_slice(&[value]));
             return value;
         }
-        if let Some(&value) = self.known.get(&key) {
+        let key = Key::new(&kind).expect("folds are written by `end_fold`");
+        let Self { known, values, function, .. } = self;
+        let key_of = |value: Value| Key::new(&function.insts[values[value.index()].definition?].kind);
+        let (found, place) = known.find(key, key_of);
+        // What stands in a block that has been closed is seen no more.
+        if let Some(value) = found.filter(|value| values[value.index()].block == self.open[depth].block) {
             return value;
         }
         let value = self.new_value(type_, depth);
-        self.uniform[value.index()] = match &kind {
+        self.values[value.index()].uniform = match &kind {
             InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => true,
             InstKind::Op { args, .. } => args.iter().all(|&arg| self.is_uniform(arg)),
             InstKind::Input(_) | InstKind::Fold(_) => false,
         };
         self.append(depth, kind, Values::from_slice(&[value]));
-        self.open[depth].known.push(key.clone());
-        self.known.insert(key, value);
+        self.known.set(place, value);
         value
     }
 }
@@ -333,11 +341,11 @@ macro_rules! emitting {
             type Bits = Value;
 
             fn constant(&mut self, value: f32) -> Value {
-                self.insert(Key::Constant(value.to_bits()), 0, InstKind::Constant(value), Type::Real)
+                self.insert(0, InstKind::Constant(value))
             }
 
             fn bits_constant(&mut self, value: u32) -> Value {
-                self.insert(Key::BitsConstant(value), 0, InstKind::BitsConstant(value), Type::Bits)
+                self.insert(0, InstKind::BitsConstant(value))
             }
 
             $(

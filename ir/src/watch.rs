@@ -5,16 +5,17 @@
 //! offer(watch, work)     what may be stopped below is stopped by this watch
 //!   stoppable(work)      Err(Stopped) if a look was told to stop; work is half done then, and thrown away
 //!     look()             in inner loops: costs a decrement, and asks the watch every few milliseconds
-//!     under(active(), task)  a part of the work that another thread does
+//!     Watches::present().hold(task)   a part of the work that another thread does
 //! ```
 //!
 //! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
 //! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is
-//! never stopped. A thread that waits for others while it is, waits [`under`] no watch: it may do work for
-//! somebody else meanwhile.
+//! never stopped. A thread that waits for others while it is, waits under [no watch](Watches::NONE): it may do
+//! work for somebody else meanwhile, which is neither stopped by this watch nor offered it.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::thread::LocalKey;
@@ -60,15 +61,42 @@ pub fn offer<T>(watch: Watch, work: impl FnOnce() -> T) -> T {
     with(&OFFERED, Some(watch), work)
 }
 
-/// Does a part of the work that a watch stops; `None` is a part that nobody stops.
-pub fn under<T>(watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
-    with(&ACTIVE, watch, work)
+/// What a thread may be stopped by: for a part of its work that another thread does, or while it waits.
+#[derive(Clone, Default)]
+pub struct Watches {
+    offered: Option<Watch>,
+    active: Option<Watch>,
 }
 
-/// The watch that stops the work in progress, for a part of it that another thread does.
-#[must_use]
-pub fn active() -> Option<Watch> {
-    ACTIVE.with_borrow(Clone::clone)
+impl Watches {
+    /// None: nobody stops the work, and none is offered.
+    pub const NONE: Self = Self { offered: None, active: None };
+
+    /// Those of the thread.
+    #[must_use]
+    pub fn present() -> Self {
+        Self { offered: OFFERED.with_borrow(Clone::clone), active: ACTIVE.with_borrow(Clone::clone) }
+    }
+
+    /// Whether there is one that may stop the work in progress.
+    #[must_use]
+    pub fn may_stop(&self) -> bool {
+        self.active.is_some()
+    }
+
+    /// Does work under them and no others.
+    pub fn hold<T>(self, work: impl FnOnce() -> T) -> T {
+        with(&OFFERED, self.offered, || with(&ACTIVE, self.active, work))
+    }
+}
+
+impl fmt::Debug for Watches {
+    /// Whether there are any.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { offered, active } = self;
+        let any = |watch: &Option<Watch>| watch.is_some();
+        f.debug_struct("Watches").field("offered", &any(offered)).field("active", &any(active)).finish()
+    }
 }
 
 /// Stops the work here if nobody wants it any more.
@@ -81,6 +109,11 @@ pub fn look() {
     }
 }
 
+/// Looks without counting: for whoever has waited for some milliseconds.
+pub fn look_now() {
+    look_closely();
+}
+
 #[cold]
 fn look_closely() {
     LEFT.set(LOOKS);
@@ -88,7 +121,7 @@ fn look_closely() {
     if cfg!(panic = "abort") {
         return;
     }
-    let Some(watch) = active() else { return };
+    let Some(watch) = ACTIVE.with_borrow(Clone::clone) else { return };
     let now = Instant::now();
     if LAST.get().is_some_and(|last| now.duration_since(last) < ASKED) {
         return;
@@ -108,7 +141,7 @@ pub fn stoppable<T>(work: impl FnOnce() -> T) -> Result<T, Stopped> {
     if watch.as_ref().is_some_and(|watch| !watch()) {
         return Err(Stopped);
     }
-    let watched = || under(watch, work);
+    let watched = || with(&ACTIVE, watch, work);
     catch_unwind(AssertUnwindSafe(watched)).map_err(|payload| match is_stop(&*payload) {
         true => Stopped,
         false => resume_unwind(payload),
@@ -140,7 +173,7 @@ mod tests {
         let watch: Watch = Arc::new(move || counted.fetch_add(1, Ordering::Relaxed) < 3);
         assert_eq!(offer(watch, || stoppable(endless)), Err(Stopped));
         assert_eq!(asked.load(Ordering::Relaxed), 4);
-        assert!(active().is_none(), "the watch is gone");
+        assert!(ACTIVE.with_borrow(Option::is_none), "the watch is gone");
         (0..1000).for_each(|_| look());
     }
 

@@ -8,10 +8,12 @@ use common::sample;
 use fastrand::Rng;
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::limits::{MAX_FOLD_DEPTH, MAX_TABLES, MAX_VALUES};
+use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::text::annotated;
 use jbt_ir::{
-    Block, BlockData, Entity, Fold, FoldKind, Function, Inst, InstData, InstKind, Op, Origin, Place, Rule,
-    Schema, Table, Type, Value, Values, VerifyError, interpret, parse, verify,
+    Block, BlockData, Domain as _, Entity, Fold, FoldKind, Function, FunctionBuilder, Inst, InstData,
+    InstKind, Op, Origin, Place, Rule, Schema, Table, Type, Value, Values, VerifyError, interpret, parse,
+    verify,
 };
 
 /// `f(x) = x + x`, with one instruction for each.
@@ -110,6 +112,34 @@ fn the_number_of_values_is_limited() {
     let mut function = verify(function).expect("the limit itself is allowed").into_function();
     add_constant(&mut function);
     assert_eq!(errors(function), [(14, Place::Function)]);
+}
+
+#[test]
+fn what_grows_beyond_the_limit_grows_no_further() {
+    // A sine becomes some 40 values, so these would become 1.6 million.
+    let mut b = FunctionBuilder::new("sines", &["x", "y"]);
+    let (x, y) = (b.input(0), b.input(1));
+    let t = b.table(Schema { name: "t".into(), columns: vec!["c".into()], parent: None, slots: vec![] });
+    let mut outside = x;
+    for _ in 0..20_000 {
+        outside = b.sin(outside);
+    }
+    let mut inside = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[y])[0];
+    let column = b.column(t, 0);
+    for _ in 0..20_000 {
+        let sine = b.sin(inside);
+        let less = b.lt(sine, column);
+        inside = b.select(less, sine, inside);
+    }
+    let folded = b.end_fold(&[inside])[0];
+    let sum = b.add(outside, folded);
+    let function = b.finish(&[("field".to_owned(), sum)]);
+    assert!(function.values.len() < MAX_VALUES);
+    let mut ran = Vec::new();
+    let made = run_pipeline(function, PIPELINE, &mut |pass, _| ran.push(pass.to_owned()));
+    assert!((MAX_VALUES + 1..MAX_VALUES + 10).contains(&made.values.len()), "{}", made.values.len());
+    assert_eq!(ran, ["legalize"], "there is nothing to do for the other passes");
+    assert!(errors(made).contains(&(14, Place::Function)));
 }
 
 /// Folds in each other.

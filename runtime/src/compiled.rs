@@ -390,7 +390,8 @@ impl Compiled {
         earlier: Option<&Arc<Kernel>>,
     ) -> Result<Arc<AnswerProgram>, CompileError> {
         let compiler = &self.0.compiler;
-        let kernel = compiler.kernel(function, Purpose::Answers(query), earlier)?;
+        let kernel = compiler.kernel(function, Purpose::Answers(query), earlier);
+        let kernel = kernel.map_err(|error| self.placed(error))?;
         Ok(Arc::new(AnswerProgram::new(self.tree(), query, compiler.bind(&kernel, tables))))
     }
 
@@ -402,7 +403,8 @@ impl Compiled {
         earlier: Option<&Arc<Kernel>>,
     ) -> Result<Arc<AnswerProgram>, CompileError> {
         let AnswerProgram { query, bound, .. } = straight;
-        let kernel = compiler.kernel(bound.kernel.lowered.clone(), Purpose::Answers(*query), earlier)?;
+        let kernel = compiler.kernel(bound.kernel.lowered.clone(), Purpose::Answers(*query), earlier);
+        let kernel = kernel.map_err(|error| self.placed(error))?;
         let bound = compiler.bind(&kernel, Arc::clone(&bound.lowered));
         Ok(Arc::new(AnswerProgram::new(self.tree(), *query, bound)))
     }
@@ -413,7 +415,8 @@ impl Compiled {
     ) -> Result<&'t Arc<RangeProgram>, CompileError> {
         self.0.ranges.get_or_make(|earlier| {
             let ranges = self.lowered(lowering, Lowering::ranges)?;
-            RangeProgram::new(&self.0.compiler, ranges, earlier).map(Arc::new)
+            let program = RangeProgram::new(&self.0.compiler, ranges, earlier);
+            program.map(Arc::new).map_err(|error| self.placed(error))
         })
     }
 

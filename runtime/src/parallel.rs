@@ -3,7 +3,7 @@
 //! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
 //! meaning: they are the case of one thread.
 
-use jbt_ir::watch;
+use jbt_ir::watch::Watches;
 use jbt_lower::Workers;
 
 #[cfg(feature = "parallel")]
@@ -17,10 +17,10 @@ pub(crate) struct PoolWorkers;
 
 impl Workers for PoolWorkers {
     fn each(&self, count: usize, task: &(dyn Fn(usize) + Sync)) {
+        let watches = Watches::present();
         // A thread that waits may do work of somebody else.
-        let watch = watch::active();
-        watch::under(None, || {
-            (0..count).into_par_iter().for_each(|index| watch::under(watch.clone(), || task(index)));
+        Watches::NONE.hold(|| {
+            (0..count).into_par_iter().for_each(|index| watches.clone().hold(|| task(index)));
         });
     }
 }
@@ -127,4 +127,41 @@ mod serial {
     }
 
     impl<I: Iterator> ParallelIterator for I {}
+}
+
+#[cfg(all(test, feature = "parallel"))]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Arc, Mutex};
+
+    use jbt_ir::watch::{self, Stopped};
+
+    use super::*;
+
+    #[test]
+    fn work_of_somebody_else_is_not_stopped_by_the_watch_of_who_waits() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let (answers, parts) = (Arc::new(Mutex::new(Vec::new())), AtomicUsize::new(0));
+        let told = Arc::clone(&answers);
+        pool.install(|| {
+            // The watch of the work lets it go on to its parts, and would stop whatever asks it afterwards.
+            watch::offer(Arc::new(|| false), || {
+                PoolWorkers.each(2, &|index| {
+                    parts.fetch_add(1, Ordering::Relaxed);
+                    if index == 0 {
+                        // Somebody else's, which the only thread does while it waits for the other part.
+                        let told = Arc::clone(&told);
+                        rayon::spawn(move || {
+                            told.lock().expect("one at a time").push(watch::stoppable(|| ()))
+                        });
+                    }
+                });
+                assert_eq!(watch::stoppable(|| ()), Err(Stopped), "the watch is back");
+            });
+        });
+        // A thread does all that it was given before it does what comes later.
+        pool.install(rayon::yield_now);
+        assert_eq!(parts.into_inner(), 2);
+        assert_eq!(*answers.lock().expect("one at a time"), [Ok(())]);
+    }
 }

@@ -115,6 +115,9 @@ fn tasks_that_a_model_is_too_large_for_are_known_in_advance() {
     assert!(of(100).too_large_for(&tasks).expect("it can be lowered").is_empty());
     let compiled = of(12_000);
     let refused = compiled.too_large_for(&tasks).expect("it can be lowered");
+    // The place is that of the formula, as others are told of limits.
+    let why = refused[0].1.to_string();
+    assert!(why.contains(":2:1: limit: after the pass legalize"), "{why}");
     let refused: Vec<Task> = refused.into_iter().map(|(task, _)| task).collect();
     assert_eq!(refused, tasks[1..]);
     // And what was foreseen comes to be.

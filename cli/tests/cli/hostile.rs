@@ -103,6 +103,29 @@ fn formulas_over_the_limit_have_one_exit_code_in_every_format() {
 }
 
 #[test]
+fn programs_over_the_limit_are_refused_by_check_and_by_each_command() {
+    let sines =
+        |count: usize| format!("jbt 1\nexpression {{ {}x{} }}\n", "sin(".repeat(count), ")".repeat(count));
+    let folder = folder().with("all.jbt", sines(100_000)).with("some.jbt", sines(12_000));
+    let limit =
+        "all.jbt:2:1: limit: after the pass legalize, the model's program has more than 1000000 values";
+    folder.jbt(&["check", "all.jbt"]).code(3).says(limit);
+    folder.jbt(&["eval", "all.jbt", "--points", "p.csv", "-o", "-"]).code(3).says(limit);
+    // What some commands take, `check` says of the others, in a line.
+    let ran = folder.jbt(&["check", "some.jbt"]).code(0);
+    let told = ran.stdout();
+    let line = told.lines().find(|line| line.contains("too large")).unwrap_or_default();
+    assert!(line.contains("for mesh, ") && line.contains(": limit: after the pass "), "{told}");
+    assert!(!line.contains("\\u{a}"), "{line}");
+    let region = ["--region", "0,0,0,1,1,1", "--resolution", "2"];
+    folder
+        .jbt(&[&["mesh", "some.jbt", "-o", "a.glb"][..], &region].concat())
+        .code(3)
+        .says("some.jbt:2:1: limit: ");
+    folder.jbt(&["eval", "some.jbt", "--points", "p.csv", "-o", "-"]).code(0);
+}
+
+#[test]
 fn lattices_over_the_limit_are_refused() {
     let folder = folder();
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.glb", "--cell", "1e-5"]).code(3).says("jbt: limit: ");

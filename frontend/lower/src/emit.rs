@@ -243,7 +243,9 @@ impl<'a> Emitter<'a> {
         let function = self.builder.function();
         let limit = |what: &str, limit: usize| {
             let message = format!("the model has too many different parts: more than {limit} {what}");
-            Err(vec![Diagnostic::limit(None, message)])
+            // The place is that of the part whose row is being written.
+            let node = self.row().places.at(RowPlace::ROW).node(self.scene);
+            Err(vec![Diagnostic::limit(self.scene.tree.node(node).span, message)])
         };
         if function.values.len() > limits::MAX_VALUES {
             return limit("values in its program", limits::MAX_VALUES);

@@ -168,6 +168,7 @@ fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
     while let Some((block, chain)) = waiting.pop() {
         let mut slots: BTreeMap<u32, u64> = BTreeMap::new();
         for &inst in &function.blocks[block].insts {
+            crate::watch::look();
             let data = &function.insts[inst];
             match &data.kind {
                 InstKind::Op { .. } => {

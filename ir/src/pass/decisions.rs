@@ -93,6 +93,7 @@ fn traced(function: &Function, deciding: &[bool]) -> Vec<bool> {
     loop {
         let before = traced.iter().filter(|&&traced| traced).count();
         for inst in function.insts.values() {
+            crate::watch::look();
             match &inst.kind {
                 InstKind::Input(_)
                 | InstKind::Constant(_)

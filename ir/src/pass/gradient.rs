@@ -69,6 +69,7 @@ fn wanted(function: &Function) -> Vec<bool> {
     // The direct dependences of each value: its operands; for an accumulator, its initial and its next value.
     let mut sources: Vec<Vec<Value>> = vec![Vec::new(); function.values.len()];
     for inst in function.insts.values() {
+        crate::watch::look();
         match &inst.kind {
             InstKind::Input(_)
             | InstKind::Constant(_)
@@ -120,6 +121,7 @@ fn depends_on_point(function: &Function) -> Vec<bool> {
     loop {
         let before = varies.iter().filter(|&&varies| varies).count();
         for inst in function.insts.values() {
+            crate::watch::look();
             match &inst.kind {
                 InstKind::Input(index) => varies[inst.results[0].index()] = *index < 3,
                 InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}

@@ -114,6 +114,7 @@ fn is_idle(
         now[value.index()] = Some(Now::number(number));
     }
     for &inst in &body.insts[at + 1..] {
+        crate::watch::look();
         let data = &function.insts[inst];
         if let InstKind::Op { op, args } = &data.kind {
             let result = data.results[0];
@@ -147,6 +148,7 @@ fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
     };
     let mut spared = insts[at + 1..].iter().map(|&inst| cost(inst)).sum();
     for &inst in insts[..at].iter().rev() {
+        crate::watch::look();
         let data = &function.insts[inst];
         if data.results.iter().any(|result| wanted.contains(result)) {
             wanted.extend(function.operands(inst));

@@ -74,6 +74,7 @@ impl Uses {
         }
         let mut captured = Vec::new();
         for &inst in &data.insts {
+            crate::watch::look();
             for &value in &function.insts[inst].results {
                 self.home[value.index()] = Some(block);
             }

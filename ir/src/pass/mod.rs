@@ -39,6 +39,7 @@ pub use simplify::simplify;
 
 use crate::builder::FunctionBuilder;
 use crate::function::Function;
+use crate::limits::MAX_VALUES;
 use crate::translate::rewrite;
 
 /// A step from a function to another one.
@@ -114,18 +115,23 @@ pub const PIPELINE: &[Pass] = &[
     },
 ];
 
-/// Runs the passes in order. The observer sees each pass's name and what the pass made.
+/// Runs the passes in order. The observer sees each pass's name and what the pass made. The passes behind one
+/// that makes more than [`MAX_VALUES`] values do not run: what it made is no function any more, and the verifier
+/// refuses it.
 #[must_use]
 pub fn run_pipeline<'a>(
-    function: Function,
+    mut function: Function,
     passes: impl IntoIterator<Item = &'a Pass>,
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Function {
-    passes.into_iter().fold(function, |function, pass| {
-        let function = (pass.run)(&function);
+    for pass in passes {
+        function = (pass.run)(&function);
         observer(pass.name, &function);
-        function
-    })
+        if function.values.len() > MAX_VALUES {
+            break;
+        }
+    }
+    function
 }
 
 /// Shares equal instructions and hoists: a plain rewrite, because the builder does both.

@@ -95,6 +95,7 @@ impl PressureWalk<'_> {
 
     fn insts(&mut self, insts: &[Inst]) {
         for &inst in insts {
+            crate::watch::look();
             self.reads(self.function.operands(inst));
             let data = &self.function.insts[inst];
             match &data.kind {

@@ -188,6 +188,7 @@ impl<'a> Cutter<'a> {
         let mut pieces = Vec::new();
         let mut from = 0;
         for (position, &inst) in insts.iter().enumerate() {
+            crate::watch::look();
             if let InstKind::Fold(fold) = &self.function.insts[inst].kind {
                 pieces.push(self.piece(block, from..position, Then::Fold(inst)));
                 self.cut(fold.body);
@@ -267,6 +268,7 @@ impl<'a> PieceLives<'a> {
         let data = &self.function.blocks[block];
         for piece in &self.pieces[&block] {
             for &inst in &data.insts[piece.insts.clone()] {
+                crate::watch::look();
                 self.read(self.function.operands(inst));
                 self.define(&self.function.insts[inst].results);
             }

@@ -62,6 +62,9 @@ impl<F: FnMut(&mut FunctionBuilder, Op, &[Value]) -> Value> Translation for Rewr
     }
 
     fn op(&mut self, inst: &InstData, op: Op, args: &[Value]) -> Value {
+        if self.builder.is_full() {
+            return self.builder.op(op, args);
+        }
         let result = (self.op)(&mut self.builder, op, args);
         self.builder.keep_distance(result, inst.origin);
         result

@@ -239,6 +239,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn block(&mut self, block: Block) -> Vec<Any<Vectors<'f, K>>> {
         let data = &self.function.blocks[block];
         for &inst in &data.insts {
+            jbt_ir::watch::look();
             self.inst(inst);
         }
         self.operands(&data.results)

@@ -6,6 +6,7 @@
 //!                is cut      are alive    by `vectors`     in pages
 //! ```
 
+mod aside;
 pub(crate) mod lower;
 mod vectors;
 
@@ -42,6 +43,9 @@ const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
 const BACKTRACKING_UP_TO: usize = 100;
 /// A function with more values than this would take seconds to compile for 16 points in a block.
 const LONG_FUNCTION: usize = 16_000;
+/// Functions with more values than this are compiled on a thread that is not waited for once nobody wants them:
+/// shorter ones take some 20 ms at most.
+const ASIDE_FROM: usize = 1_000;
 /// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as
 /// fast, and where few points are asked it has less to do.
 const WHOLE_UP_TO: usize = 1_000;
@@ -81,7 +85,10 @@ impl Cranelift {
         let ChosenPlan { plan, vectors, allocator } = self.choose(outside)?;
         let isa = isa::host(self.opt_level, allocator)?;
         let lanes = vectors.count() * LANES;
-        let code = guard(|| MachineCode::new(lower::lower(outside, &plan, vectors), lanes, isa))??;
+        let lowered = guard(|| lower::lower(outside, &plan, vectors))?;
+        let compile = move || guard(|| MachineCode::new(lowered, lanes, isa));
+        let is_long = outside.values.len() > ASIDE_FROM;
+        let code = if is_long { aside::aside(compile)?? } else { compile()?? };
         Ok(Kernel::new(code, outside))
     }
 

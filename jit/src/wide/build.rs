@@ -228,6 +228,7 @@ impl<'a> Builder<'a> {
         let mut wanted: HashSet<Value> = gate.iter().map(|&(value, _)| value).collect();
         let mut is_first = vec![false; insts.len()];
         for (at, &inst) in insts.iter().enumerate().rev() {
+            jbt_ir::watch::look();
             let data = &function.insts[inst];
             is_first[at] = data.kind.is_leaf() || data.results.iter().any(|value| wanted.contains(value));
             if is_first[at] {
@@ -251,6 +252,7 @@ impl<'a> Builder<'a> {
         let function = self.function;
         read.extend(&function.blocks[block].results);
         for &inst in &function.blocks[block].insts {
+            jbt_ir::watch::look();
             read.extend(function.operands(inst));
             if let InstKind::Fold(fold) = &function.insts[inst].kind {
                 self.reads(fold.body, read);

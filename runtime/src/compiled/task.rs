@@ -1,7 +1,12 @@
 //! What is done with a model, and the programs that it takes: the one list of both.
 
+use jbt_ir::domain::counting::{evaluations_per_row, of_selection};
 use jbt_ir::limits::MAX_VALUES;
-use jbt_lower::Lowering;
+use jbt_ir::{Selection, pass};
+use jbt_lower::{Lowered, Lowering};
+use jbt_model::check::CheckedNode;
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
 
 use super::{Compiled, Need, PointScope};
@@ -66,8 +71,14 @@ impl Compiled {
             if longest.function.values.len() <= MAX_VALUES / LARGEST_GROWTH / RANGES_GROWTH {
                 return Ok(Vec::new());
             }
+            drop(longest);
             let mut looked: Vec<(Purpose, Option<CompileError>)> = Vec::new();
             let mut refused = Vec::new();
+            // Whatever is done with a model takes its field, so none of the others fits if that does not.
+            let field = Need::Answers(PointScope::Anywhere, Query::FIELD);
+            if let Some(error) = self.beyond(&lowering, field, Purpose::Answers(Query::FIELD))? {
+                return Ok(tasks.iter().map(|&task| (task, error.clone())).collect());
+            }
             for &task in tasks {
                 for need in task.needs() {
                     let purpose = match need {
@@ -88,6 +99,21 @@ impl Compiled {
         })?
     }
 
+    /// How many distances to skeletons one point takes that is asked a query, with all rows. No code is made:
+    /// what passes save is saved, and what they make longer stays as short as it is.
+    ///
+    /// # Errors
+    /// What lowering says.
+    pub fn evaluations_per_point(&self, query: Query) -> Result<u64, CompileError> {
+        jbt_ir::watch::stoppable(|| {
+            let Lowered { function, tables } = self.lowered(None, |lowering| lowering.answers(query))?;
+            let shorter = [pass::fold_constants, pass::simplify, pass::share, pass::dce];
+            let function = shorter.iter().fold(function, |function, pass| pass(&function));
+            let all = Selection::new(&function, &tables);
+            Ok(of_selection(&evaluations_per_row(&function), &all))
+        })?
+    }
+
     /// Why a program cannot be had, if passes make it too long.
     fn beyond<'t>(
         &'t self,
@@ -102,6 +128,27 @@ impl Compiled {
         if function.values.len() <= MAX_VALUES / LARGEST_GROWTH {
             return Ok(None);
         }
-        Ok(grown(function, purpose).err())
+        Ok(grown(function, purpose).err().map(|error| self.placed(error)))
+    }
+
+    /// An error about the length of a program, with a place: that of the longest formula of the model, which
+    /// is most of a program that is too long, or of the whole model if there is none.
+    pub(super) fn placed(&self, error: CompileError) -> CompileError {
+        let CompileError::Model(told) = &error else { return error };
+        let tree = self.tree();
+        let steps = |node: &&CheckedNode| match &node.kind {
+            NodeKind::Expression(expression) => expression.form().steps(),
+            NodeKind::Primitive(_)
+            | NodeKind::Particles(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => 0,
+        };
+        // The root is the last of those that have none.
+        let place = tree.nodes().iter().max_by_key(steps).and_then(|node| node.span);
+        let placed = told.iter().map(|one| Diagnostic { span: one.span.or(place), ..one.clone() });
+        tree.diagnostics(placed.collect()).into()
     }
 }

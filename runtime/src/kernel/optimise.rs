@@ -107,13 +107,10 @@ fn run<'a>(
 ) -> Result<Function, CompileError> {
     for pass in passes {
         function = run_pipeline(function, [pass], observer);
-        let values = function.values.len();
-        if values > limits::MAX_VALUES {
+        if function.values.len() > limits::MAX_VALUES {
             let most = limits::MAX_VALUES;
-            let message = format!(
-                "after the pass {}, the model's program has {values} values; it may have {most}",
-                pass.name
-            );
+            let message =
+                format!("after the pass {}, the model's program has more than {most} values", pass.name);
             return Err(CompileError::Model(vec![Diagnostic::limit(None, message)].into()));
         }
     }

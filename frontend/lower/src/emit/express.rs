@@ -51,7 +51,7 @@ impl Leaves {
 fn distinct(d: &mut FunctionBuilder, mut fields: Vec<Value>) -> Vec<Value> {
     let mut seen = FxHashSet::default();
     for field in &mut fields {
-        while !seen.insert(*field) {
+        while !seen.insert(*field) && !d.is_full() {
             // The larger of a number and itself is that number, to the bit, and moves with it.
             *field = d.max(*field, *field);
         }

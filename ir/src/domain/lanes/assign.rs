@@ -48,6 +48,7 @@ pub(super) fn assign(schedule: &Schedule<'_>) -> Places {
 fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
     let function = schedule.function;
     for data in function.insts.values() {
+        crate::watch::look();
         let bits = match data.kind {
             InstKind::Constant(number) => number.to_bits(),
             InstKind::BitsConstant(bits) => bits,

@@ -39,6 +39,7 @@ impl Graph {
         let insts = data.insts.clone();
         let mut weight: Vec<usize> = insts.iter().map(|&inst| function.insts[inst].results.len()).collect();
         for (position, &inst) in insts.iter().enumerate() {
+            crate::watch::look();
             for value in &function.insts[inst].results {
                 node[value.index()] = position;
             }
