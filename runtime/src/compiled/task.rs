@@ -144,7 +144,8 @@ impl Compiled {
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => 0,
+            | NodeKind::Attribute { .. }
+            | NodeKind::Constant { .. } => 0,
         };
         // The root is the last of those that have none.
         let place = tree.nodes().iter().max_by_key(steps).and_then(|node| node.span);
