@@ -10,8 +10,8 @@
 //!
 //! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
 //! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is
-//! never stopped. A thread that waits for others while it is, waits under [no watch](Watches::NONE): it may do
-//! work for somebody else meanwhile, which is neither stopped by this watch nor offered it.
+//! never stopped. A thread that waits for others while it is, waits under [no watch](Watches::NONE): it may
+//! do work for somebody else meanwhile, which is neither stopped by this watch nor offered it.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};

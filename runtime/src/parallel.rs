@@ -152,7 +152,7 @@ mod tests {
                         // Somebody else's, which the only thread does while it waits for the other part.
                         let told = Arc::clone(&told);
                         rayon::spawn(move || {
-                            told.lock().expect("one at a time").push(watch::stoppable(|| ()))
+                            told.lock().expect("one at a time").push(watch::stoppable(|| ()));
                         });
                     }
                 });

@@ -102,11 +102,11 @@ fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
             of_job(|gaps| drop(sampler.dense(&lattice).on_progress(|_| gaps.look()).run())),
         ));
     }
-    if let Ok(slicer) = Slicer::of(&compiled, &Plane::default(), Query::FIELD) {
-        if let Ok(rectangle) = slicer.rectangle() {
-            let job = slicer.contour(&rectangle, &Detail::default());
-            told.push(("contour", of_job(|gaps| drop(job.on_progress(|_| gaps.look()).run()))));
-        }
+    if let Ok(slicer) = Slicer::of(&compiled, &Plane::default(), Query::FIELD)
+        && let Ok(rectangle) = slicer.rectangle()
+    {
+        let job = slicer.contour(&rectangle, &Detail::default());
+        told.push(("contour", of_job(|gaps| drop(job.on_progress(|_| gaps.look()).run()))));
     }
     if let Ok(solid) = Solid::of(&compiled) {
         let settings = Measure { fineness: Fineness::Resolution(32), ..Measure::default() };
