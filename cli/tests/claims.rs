@@ -143,10 +143,11 @@ fn claims_hold() {
 }
 
 /// The folders of packages.
-const PACKAGES: [(&str, &str); 8] = [
+const PACKAGES: [(&str, &str); 9] = [
     ("jbt", "runtime"),
     ("jbt-cli", "cli"),
     ("jbt-targets", "fuzz/targets"),
+    ("jbt-benches", "benches"),
     ("jbt-ir", "ir"),
     ("jbt-jit", "jit"),
     ("jbt-lower", "frontend/lower"),
@@ -235,7 +236,8 @@ fn promises_name_tests_that_are_there() {
                 path.join(format!("{test}.rs")).exists() || path.join(test).join("main.rs").exists();
             assert!(is_there, "{package} has no test {test}: {row}");
         } else if let Some(program) = after("--bin") {
-            assert!(root().join(format!("fuzz/targets/src/bin/{program}.rs")).exists(), "{row}");
+            let folder = folder_of(after("-p").unwrap_or("jbt-targets"));
+            assert!(folder.join(format!("src/bin/{program}.rs")).exists(), "{row}");
         } else if !command.contains("cargo deny") {
             let script = words.iter().find(|word| word.contains('/')).unwrap_or_else(|| panic!("{row}"));
             assert!(root().join(script).exists(), "{script} is not there: {row}");
