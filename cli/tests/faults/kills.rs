@@ -18,9 +18,13 @@ fn a_kill_at_any_moment_leaves_the_old_file_or_the_new_one() {
     let scene = example("peanut");
     let room = Room::new();
     let arguments = ["mesh", &scene, "-o", "out.stl", "--resolution", "160", "--quiet"];
-    let begin = Instant::now();
-    assert!(room.command(JBT).args(arguments).status().expect("it runs").success());
-    let whole = begin.elapsed();
+    let run = |_| {
+        let begin = Instant::now();
+        assert!(room.command(JBT).args(arguments).status().expect("it runs").success());
+        begin.elapsed()
+    };
+    // The first one reads the binary from the disk, and others may be disturbed.
+    let whole = (0..5).map(run).min().expect("five runs");
     let new = fs::read(room.path("out.stl")).expect("a mesh");
     let mut rng = fastrand::Rng::with_seed(7);
     let (mut finished, mut temporaries) = (0, 0);
