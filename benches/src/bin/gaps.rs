@@ -5,10 +5,11 @@
 //! cargo run --release -p jbt-benches --bin gaps [-- PART [ENGINE]]
 //! ```
 //!
-//! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those of
-//! the processor that the one thread that works took, so that other work on the machine does not count; Linux
-//! alone tells them. Compiling is asked by its watch, every 5 ms at most; other work by its hook of progress.
-//! Only scenes whose name has PART are looked at. What a gap of more than 50 ms is about stands behind a `!`.
+//! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those
+//! of the processor that the one thread that works took, so that other work on the machine does not count;
+//! Linux alone tells them. Compiling is asked by its watch, every 5 ms at most; other work by its hook of
+//! progress. Only scenes whose name has PART are looked at. What a gap of more than 50 ms is about stands
+//! behind a `!`.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fs;

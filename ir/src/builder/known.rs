@@ -1,4 +1,5 @@
-//! Which instructions there are, so that none is written twice: a table of values, found by what defines them.
+//! Which instructions there are, so that none is written twice: a table of values, found by what defines
+//! them.
 //!
 //! It keeps four bytes for each place, because a function may have a million values: what defines a value
 //! stands in the function, and whoever asks says where.

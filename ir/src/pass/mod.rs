@@ -116,8 +116,8 @@ pub const PIPELINE: &[Pass] = &[
 ];
 
 /// Runs the passes in order. The observer sees each pass's name and what the pass made. The passes behind one
-/// that makes more than [`MAX_VALUES`] values do not run: what it made is no function any more, and the verifier
-/// refuses it.
+/// that makes more than [`MAX_VALUES`] values do not run: what it made is no function any more, and the
+/// verifier refuses it.
 #[must_use]
 pub fn run_pipeline<'a>(
     mut function: Function,

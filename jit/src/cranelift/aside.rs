@@ -1,7 +1,7 @@
 //! Work that looks at no watch, on a thread that nobody waits for once the caller is stopped.
 //!
-//! Cranelift compiles a function as a whole and asks nobody on the way: a second for a long one. Its thread ends
-//! with its work, and what it has made is dropped.
+//! Cranelift compiles a function as a whole and asks nobody on the way: a second for a long one. Its thread
+//! ends with its work, and what it has made is dropped.
 
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -43,8 +43,8 @@ const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
 const BACKTRACKING_UP_TO: usize = 100;
 /// A function with more values than this would take seconds to compile for 16 points in a block.
 const LONG_FUNCTION: usize = 16_000;
-/// Functions with more values than this are compiled on a thread that is not waited for once nobody wants them:
-/// shorter ones take some 20 ms at most.
+/// Functions with more values than this are compiled on a thread that is not waited for once nobody wants
+/// them: shorter ones take some 20 ms at most.
 const ASIDE_FROM: usize = 1_000;
 /// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as
 /// fast, and where few points are asked it has less to do.
