@@ -59,12 +59,12 @@ fn terms(count: usize, term: impl Fn(usize) -> String) -> String {
 fn models() -> Vec<(&'static str, String)> {
     let moved = "sum { LAST translate (0.1 0 0) { LAST } }";
     let warped = "sum { twist axis z rate 0.1 { LAST } translate (0.1 0 0) { LAST } }";
-    let kinds = ["point { RADIUS }", "segment { to (0 0 1) RADIUS }", "disk { size 1 RADIUS }"];
+    let kinds = ["point { RADIUS }", "segment { from (0 0 0) to (0 0 1) RADIUS }"];
     let falloffs = ["wyvill", "blinn { hardness 3 cutoff 1 edge smooth }", "soft"];
     let mixed = |count: usize| {
         let part = |at: usize| {
             let radius = format!("radius {} falloff {}", 1 + at % 7, falloffs[at % falloffs.len()]);
-            format!("translate ({at} 0 0) {{ {} }}\n", kinds[at % 2].replace("RADIUS", &radius))
+            format!("translate ({at} 0 0) {{ {} }}\n", kinds[at % kinds.len()].replace("RADIUS", &radius))
         };
         format!("sum {{ {} }}", (0..count).map(part).collect::<String>())
     };
@@ -146,7 +146,7 @@ fn program(text: &str, purpose: Purpose, level: Level) -> ProgramCost {
     let mut times = Times::default();
     let refused = |times, stage: &str, units| ProgramCost { times, units, end: format!("refused: {stage}") };
     let read = times.time("read", || jbt::text::parse(text.as_bytes(), &jbt::text::Options::default()));
-    let Ok(model) = read else { return refused(times, "read", 0) };
+    let model = read.unwrap_or_else(|error| panic!("what is measured reads: {error}"));
     let Ok(tree) = times.time("check", || model.check()) else { return refused(times, "check", 0) };
     let lowering = times.time("shapes", || Lowering::new(&tree));
     let lowered = times.time("lower", || match purpose {

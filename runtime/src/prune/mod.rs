@@ -96,7 +96,7 @@ impl Region {
             let selection = match of {
                 PartSelection::Whole => Arc::clone(&self.selection),
                 PartSelection::Part(part) => Arc::clone(&parts[first + part].selection),
-                PartSelection::Own => Arc::new(own.next().unwrap_or_default()),
+                PartSelection::Own => Arc::new(own.next().expect("each such part is counted")),
             };
             parts.push(Self { bounds, selection });
         }
