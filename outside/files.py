@@ -276,7 +276,7 @@ class Judge:
         """Meshes that options change: fewer triangles, a flat bottom, edges, colours by an attribute."""
         whole = self.run(scene, "whole.glb", "--resolution", "48")
         for form in FORMATS:
-            for name, options in [("simple", ["--simplify", "25%"]), ("flat", ["--flat-bottom", "0.3"]), ("sharp", ["--sharp", "on"]),
+            for name, options in [("simple", ["--simplify", "25%"]), ("flat", ["--flat-bottom", "0.3"]), ("cut", ["--sharp", "off"]),
                                   ("by", ["--color-by", "rough", "--ramp", "grey"])]:
                 file = f"{name}.{form}"
                 if name == "by" and form == "stl":

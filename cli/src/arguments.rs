@@ -168,7 +168,7 @@ pub struct MeshArguments {
     pub no_thin: bool,
     /// Whether vertices go to the edges and corners of the surface, and normals are split there; smooth
     /// scenes have none
-    #[arg(long, value_enum, default_value_t = Switch::Off)]
+    #[arg(long, value_enum, default_value_t = Switch::On)]
     pub sharp: Switch,
     /// Fewer triangles: 25% keeps a quarter of them, and a number lets the surface move by that, in units of
     /// the scene; what is closed stays closed, attributes are kept

@@ -35,7 +35,7 @@ def test_a_ball_is_one() -> None:
 def test_edges_are_sharp_and_split(tmp_path: Path) -> None:
     box = "within (-0.83 -0.83 -0.83) to (0.83 0.83 0.83) { point { radius 9 } }"
     cube = jbt.loads(f"jbt 1 color (1 0 0) {{ {box} }}")
-    mesh, smooth = cube.mesh(cell=0.1, sharp=True), cube.mesh(cell=0.1)
+    mesh, smooth = cube.mesh(cell=0.1), cube.mesh(cell=0.1, sharp=False)
     assert mesh.closed
     corners = np.linalg.norm(np.abs(mesh.vertices) - 0.83, axis=1) < 1e-3
     assert corners.sum() == 8

@@ -283,17 +283,18 @@ impl Compiled {
     }
 
     /// What tells which operands decide about the field; `None` if nothing in the model may bend its surface
-    /// sharply. It has the rows and the numbers of the field's program for regions.
+    /// sharply. It has the rows and the numbers of the gradient's program for regions: the field's has terms
+    /// left out that only the gradient needs.
     pub(crate) fn decisions(&self) -> Result<Option<Decisions>, CompileError> {
-        let field = self.answers(PointScope::Regions, Query::FIELD)?;
-        let Some(function) = pass::decisions(&field.bound.kernel.lowered) else { return Ok(None) };
+        let slopes = self.answers(PointScope::Regions, Query::GRADIENT)?;
+        let Some(function) = pass::decisions(&slopes.bound.kernel.lowered) else { return Ok(None) };
         let program = self.0.decisions.get_or_make(|earlier| {
             let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(Query::GRADIENT));
             let kernel = compiler.kernel(function.clone(), purpose, earlier).or_else(|_| {
                 // It is several times as long as the field's, which the engine has taken.
                 compiler.clone().on_engine(Engine::Lanes).kernel(function, purpose, None)
             })?;
-            Ok(Arc::new(DecisionProgram(compiler.bind(&kernel, Arc::clone(&field.bound.lowered)))))
+            Ok(Arc::new(DecisionProgram(compiler.bind(&kernel, Arc::clone(&slopes.bound.lowered)))))
         })?;
         Ok(Some(Decisions(Arc::clone(program))))
     }

@@ -75,10 +75,10 @@ pub struct Polygonize {
 }
 
 impl Default for Polygonize {
-    /// The model's support at the default fineness, not verified; thin parts are searched for, edges are not
-    /// made sharp.
+    /// The model's support at the default fineness, not verified; thin parts are searched for, edges are
+    /// sharp.
     fn default() -> Self {
-        Self { region: None, fineness: Fineness::default(), verify: false, thin_parts: true, sharp: false }
+        Self { region: None, fineness: Fineness::default(), verify: false, thin_parts: true, sharp: true }
     }
 }
 

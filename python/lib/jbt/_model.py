@@ -386,7 +386,7 @@ class Model(ModelMembers):
         cell: float | None = None,
         region: Region | None = None,
         thin: bool = True,
-        sharp: bool = False,
+        sharp: bool = True,
         engine: Engine | None = None,
         threads: int | None = None,
         progress: Progress = None,

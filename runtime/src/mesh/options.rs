@@ -31,9 +31,9 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts, no sharp edges.
+    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts, sharp edges.
     fn default() -> Self {
-        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false, sharp: false }
+        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false, sharp: true }
     }
 }
 

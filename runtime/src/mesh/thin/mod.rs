@@ -24,6 +24,7 @@ use super::field::Field;
 use super::indexed::Mesh;
 use super::report::{MAX_NEAR, ThinReport};
 use super::stage::MeshStage;
+use super::vertex::side::SharpVertex;
 use crate::morton::morton;
 use crate::progress::Progress;
 use crate::span::span;
@@ -37,7 +38,7 @@ use shreds::{Chunks, Looked};
 pub(super) fn find<F: Field>(
     field: &F,
     division: &BrickDivision<F::Region>,
-    (crossings, mesh): (&Crossings, &Mesh),
+    (crossings, mesh, sharp): (&Crossings, &Mesh, &[SharpVertex]),
     iso: f32,
     progress: &Progress<'_>,
 ) -> Result<ThinReport, MeshError<F::Error>> {
@@ -49,7 +50,7 @@ pub(super) fn find<F: Field>(
         None => (bricks.edge, &bricks.places, &division.regions),
     };
     let chunks = &Chunks { edge, places, regions };
-    let looked = Looked { field, iso, bricks, crossings, crossed: &crossed, chunks, mesh };
+    let looked = Looked { field, iso, bricks, crossings, crossed: &crossed, chunks, mesh, sharp };
     let mut alarms = looked.shreds()?;
     let mut report = ThinReport { shredded: alarms.len() as u64, ..ThinReport::default() };
     let blocks = (bricks.edge == EDGE).then(|| (&bricks.places[..], &division.regions[..]));

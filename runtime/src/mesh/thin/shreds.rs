@@ -23,6 +23,7 @@ use crate::mesh::crossing::Crossings;
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::mesh::indexed::Mesh;
+use crate::mesh::vertex::side::{CutVertex, SharpVertex};
 use crate::morton::morton;
 
 /// Vertices are tested where at least one of this many crossed edges in a block is lone. A sheet of nine
@@ -56,6 +57,8 @@ pub(super) struct Looked<'a, F: Field> {
     pub(super) crossed: &'a CrossedBlocks<'a>,
     pub(super) chunks: &'a Chunks<'a, F::Region>,
     pub(super) mesh: &'a Mesh,
+    /// Its vertices on edges, ascending.
+    pub(super) sharp: &'a [SharpVertex],
 }
 
 /// A point to evaluate, and the index of its chunk.
@@ -97,8 +100,8 @@ impl<F: Field> Looked<'_, F> {
     /// The number of vertices at which the part is thinner than a cell.
     fn votes(&self, vertices: &[usize]) -> Result<usize, MeshError<F::Error>> {
         let probe = |&vertex: &usize| {
-            let against = self.mesh.normals[vertex].map(|component| -component);
-            let (chunk, point) = self.place(self.mesh.positions[vertex], against)?;
+            let CutVertex { position, normal } = self.cut(vertex);
+            let (chunk, point) = self.place(position, normal.map(|component| -component))?;
             Some(ShredProbe { chunk, point })
         };
         let mut probes: Vec<ShredProbe> = vertices.iter().filter_map(probe).collect();
@@ -113,6 +116,14 @@ impl<F: Field> Looked<'_, F> {
             votes += values.iter().filter(|&&value| !is_inside(value, self.iso)).count();
         }
         Ok(votes)
+    }
+
+    /// A vertex as it would be without edges. Of a sheet with a rim, one on the rim looks along the sheet.
+    fn cut(&self, vertex: usize) -> CutVertex {
+        match self.sharp.binary_search_by_key(&(vertex as u32), |sharp| sharp.vertex) {
+            Ok(place) => self.sharp[place].cut,
+            Err(_) => CutVertex { position: self.mesh.positions[vertex], normal: self.mesh.normals[vertex] },
+        }
     }
 
     /// The vertices of a cell.

@@ -150,6 +150,27 @@ impl CrossedEdge {
         self.bracket.ends[1]
     }
 
+    /// The rise of a linear field of this slope along the whole edge.
+    pub(super) fn rise_along(&self, slope: [f64; 3]) -> f64 {
+        let [outside, inside] = self.bracket.ends;
+        let axis = (0..3).find(|&axis| outside[axis] != inside[axis]);
+        axis.map_or(0.0, |axis| slope[axis] * f64::from(self.widths[0]))
+    }
+
+    /// Newton's step from a point of the edge to where the field is higher by `rise`, along the edge; the
+    /// point itself where the slope tells nothing.
+    pub(super) fn step(&self, mut point: [f32; 3], rise: f64, slope: [f64; 3]) -> [f32; 3] {
+        let [outside, inside] = self.bracket.ends;
+        for axis in (0..3).filter(|&axis| outside[axis] != inside[axis]) {
+            let next = (f64::from(point[axis]) + rise / slope[axis]) as f32;
+            if next.is_finite() {
+                let [low, high] = [outside[axis].min(inside[axis]), outside[axis].max(inside[axis])];
+                point[axis] = next.clamp(low, high);
+            }
+        }
+        point
+    }
+
     /// Whether the rise is still more than a quarter of the rise at the previous look, where an eighth is
     /// usual; at the last look, whether it is a jump.
     fn may_jump(&self, look: usize) -> bool {
@@ -259,25 +280,21 @@ impl CrossedEdges {
         self.halve(field, region, iso, edges.iter(), LOOKS.len() - 1)
     }
 
-    /// The crossings of all edges, nearly: by the rule of false position.
+    /// The crossings of all edges, nearly: by one step of the rule of false position.
     pub(super) fn estimated<F: Field>(
         &mut self,
         field: &F,
         region: &F::Region,
         iso: f32,
     ) -> Result<Vec<[f32; 3]>, F::Error> {
-        /// Evaluations for each edge.
-        const STEPS: usize = 2;
         let mut brackets: Vec<Bracket> = self.edges.iter().map(|edge| edge.bracket).collect();
-        let mut points: Vec<[f32; 3]> = brackets.iter().map(|bracket| bracket.secant(iso)).collect();
-        for _ in 0..STEPS {
-            let values = self.points.ask(field, region, points.iter().copied())?;
-            for ((bracket, point), &value) in brackets.iter_mut().zip(&mut points).zip(values) {
-                bracket.cut(iso, *point, value);
-                *point = bracket.secant(iso);
-            }
-        }
-        Ok(points)
+        let points: Vec<[f32; 3]> = brackets.iter().map(|bracket| bracket.secant(iso)).collect();
+        let values = self.points.ask(field, region, points.iter().copied())?;
+        let cut = brackets.iter_mut().zip(points).zip(values).map(|((bracket, point), &value)| {
+            bracket.cut(iso, point, value);
+            bracket.secant(iso)
+        });
+        Ok(cut.collect())
     }
 
     /// The edge of a sheet with the largest rise of the field; the first of equal ones.

@@ -34,7 +34,7 @@ pub(super) struct Sheet {
     /// The number of these edges.
     count: usize,
     /// The sum of the unit vectors along the edges, from inside to outside.
-    outward: [f32; 3],
+    pub(super) outward: [f32; 3],
     /// The edge of the cell.
     pub(super) size: f32,
     /// The cell.

@@ -7,6 +7,15 @@ pub(crate) struct SharpVertex {
     pub(crate) vertex: u32,
     /// What meets there.
     pub(crate) sides: Vec<SharpSide>,
+    /// Where it would be if edges were cut off, and its unit normal there.
+    pub(crate) cut: CutVertex,
+}
+
+/// A vertex that cuts an edge off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CutVertex {
+    pub(crate) position: [f32; 3],
+    pub(crate) normal: [f32; 3],
 }
 
 /// A smooth part of the surface that ends at a vertex.

@@ -5,6 +5,7 @@ use super::super::super::surface::unit;
 use super::super::sheet::{Sheet, Start};
 use super::super::side::SharpSide;
 use super::crossing::{Crossing, SHARP, dot};
+use super::probe::DecidedPoint;
 use super::quadric::{self, EdgeAim};
 use crate::boxes::Box3;
 
@@ -17,8 +18,12 @@ pub(super) struct Candidate<'a> {
     pub(super) sides: Vec<usize>,
     pub(super) count: usize,
     pub(super) position: [f32; 3],
+    /// The box in which it is placed.
+    pub(super) home: Box3,
     /// Whether the position is beyond the cell.
     pub(super) is_beyond: bool,
+    /// Whether the edge is not within its reach.
+    pub(super) is_off_edge: bool,
 }
 
 impl<'a> Candidate<'a> {
@@ -33,9 +38,56 @@ impl<'a> Candidate<'a> {
         let is_sharp = (0..crossings.len()).any(|a| {
             (0..a).any(|b| sides[a] != sides[b] && dot(crossings[a].normal, crossings[b].normal) < SHARP)
         });
+        // Normals of walls that are found with few numbers in between may be wrong.
+        let along: f64 =
+            crossings.iter().map(|crossing| dot(crossing.normal, sheet.outward.map(f64::from))).sum();
         let Start { bounds, .. } = sheet.start;
         let position = bounds.low;
-        is_sharp.then_some(Self { sheet, crossings, mean, sides, count, position, is_beyond: false })
+        (is_sharp && along > 0.0).then_some(Self {
+            sheet,
+            crossings,
+            mean,
+            sides,
+            count,
+            position,
+            home: bounds,
+            is_beyond: false,
+            is_off_edge: false,
+        })
+    }
+
+    /// Places it in a box.
+    pub(super) fn put(&mut self, position: [f32; 3], home: Box3) {
+        (self.position, self.home) = (position, home);
+    }
+
+    /// Pulls it onto the surface, as what is at it says, in its home: where it meets a side, along that side.
+    pub(super) fn pull(&mut self, iso: f32, at: &DecidedPoint) {
+        let Some(normal) = at.normal() else { return };
+        let (from, Box3 { low, high }) = (self.position.map(f64::from), self.home);
+        let (mut to, mut along, mut height) = (from, normal, at.height(iso));
+        // Each turn but the last one meets a side.
+        for _ in 0..3 {
+            let square = dot(along, along);
+            if square == 0.0 {
+                break;
+            }
+            let mut is_met = false;
+            for axis in (0..3).filter(|&axis| along[axis] != 0.0) {
+                let [low, high] = [low, high].map(|corner| f64::from(corner[axis]));
+                let next = from[axis] + height / square * along[axis];
+                to[axis] = next.clamp(low, high);
+                if to[axis] != next {
+                    height -= (to[axis] - from[axis]) * normal[axis];
+                    (along[axis], is_met) = (0.0, true);
+                    break;
+                }
+            }
+            if !is_met {
+                break;
+            }
+        }
+        self.position = clamped(to, self.home);
     }
 
     /// Where the planes of its crossings meet.
@@ -56,6 +108,20 @@ impl<'a> Candidate<'a> {
             quadric::aim(&both, self.mean).filter(|aim| matches!(aim, EdgeAim::Line(..)))
         });
         aims.collect()
+    }
+
+    /// For each side, the crossing that is nearest to its position.
+    pub(super) fn nearest(&self) -> impl Iterator<Item = Crossing> {
+        let distance = |crossing: &Crossing| {
+            let way =
+                std::array::from_fn(|axis| f64::from(crossing.place[axis]) - f64::from(self.position[axis]));
+            dot(way, way)
+        };
+        (0..self.count).filter_map(move |side| {
+            let both = self.crossings.iter().zip(&self.sides);
+            let mine = both.filter(|(_, of)| **of == side).map(|(one, _)| *one);
+            mine.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        })
     }
 
     /// Whether the field jumps at one of its crossings.

@@ -22,6 +22,7 @@
 //! aim      the point or the line that is nearest to the planes                                   (quadric)
 //! place    in the cell, or a little beyond: an edge may poke through a side of its cell
 //!          and have no point in it                                                               (place)
+//! refine   where no side jumps, aim again with planes close by: sides are curved                 (refine)
 //! keep     if the field is nearer to the iso-value than at the mean; at a jump, if the surface is there
 //! sides    for each signature: the mean normal, the mean attributes, and the crossings
 //! ```
@@ -32,13 +33,14 @@ mod leaning;
 mod place;
 mod probe;
 mod quadric;
+mod refine;
 
 use super::super::cell;
 use super::super::field::Field;
 use super::super::surface::unit;
 use super::batch::{Done, VertexBatch, VertexSource};
 use super::sheet::{Sheet, Start};
-use super::side::SharpVertex;
+use super::side::{CutVertex, SharpVertex};
 
 use candidate::Candidate;
 
@@ -56,7 +58,7 @@ impl VertexBatch {
         let mut gradient_evaluations = probes.asked;
         let chosen: Vec<&Sheet> = sheets
             .iter()
-            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet, iso))
+            .filter(|sheet| self.jumped.contains(&sheet.start.vertex) || probes.differ(sheet))
             .collect();
         if chosen.is_empty() {
             return Ok(Done { gradient_evaluations, ..Done::default() });
@@ -72,6 +74,7 @@ impl VertexBatch {
             .collect();
         let wide = place::place(source, brick, self, &mut candidates)?;
         let region = wide.as_ref().unwrap_or(region);
+        gradient_evaluations += refine::refine(source.field, region, iso, &mut candidates)?;
         candidates = place::nearer(source.field, (region, source.bricks), iso, candidates)?;
         let sharp = self.put(source, brick, &candidates)?;
         Ok(Done { gradient_evaluations, sharp, ..Done::default() })
@@ -128,13 +131,18 @@ impl VertexBatch {
                 let edges = |side: usize| sides[side].edges.count_ones();
                 if edges(side) > edges(best) { side } else { best }
             });
+            let slope = self.gradient.each_ref().map(|plane| -f64::from(plane[vertex]));
+            let cut = CutVertex {
+                position: self.points.each_ref().map(|plane| plane[vertex]),
+                normal: unit(slope).unwrap_or(normal),
+            };
             for (axis, along) in normal.into_iter().enumerate() {
                 self.points[axis][vertex] = one.position[axis];
                 self.gradient[axis][vertex] = -along;
             }
             let planes = self.attributes.chunks_exact_mut(self.count);
             planes.zip(&sides[widest].attributes).for_each(|(plane, &value)| plane[vertex] = value);
-            sharp.push(SharpVertex { vertex: vertex as u32, sides });
+            sharp.push(SharpVertex { vertex: vertex as u32, sides, cut });
             first += one.crossings.len();
         }
         Ok(sharp)

@@ -26,7 +26,9 @@ struct Claim {
     candidate: usize,
     face: usize,
     position: [f32; 3],
-    /// The corners of that cell away from the face.
+    /// That cell.
+    bounds: Box3,
+    /// The corners of it away from the face.
     corners: [[f32; 3]; 4],
 }
 
@@ -43,7 +45,7 @@ pub(super) fn place<F: Field>(
         let Some(aim) = one.aim() else { continue };
         let bounds = batch.bounds(one.sheet.start.vertex);
         if let Some(point) = aim.within(bounds) {
-            one.position = clamped(point, bounds);
+            one.put(clamped(point, bounds), bounds);
             continue;
         }
         let edges = if let EdgeAim::Point(_) = aim {
@@ -59,8 +61,10 @@ pub(super) fn place<F: Field>(
         let reached = first(bounds);
         let beyond = if reached.is_none() { first(near) } else { None };
         one.is_beyond = beyond.is_some();
+        one.is_off_edge = reached.or(beyond).is_none();
         let nearest = || clamped(edges.first().unwrap_or(&aim).point(), bounds);
-        one.position = reached.or(beyond).unwrap_or_else(nearest);
+        let home = if one.is_beyond { near } else { bounds };
+        one.put(reached.or(beyond).unwrap_or_else(nearest), home);
     }
     if claims.is_empty() && !candidates.iter().any(|one| one.is_beyond || one.is_at_jump()) {
         return Ok(None);
@@ -74,7 +78,8 @@ pub(super) fn place<F: Field>(
         let one = &mut candidates[claim.candidate];
         let inside = is_inside(one, claim.face);
         if values.iter().all(|&value| (value >= source.options.iso) == inside) {
-            (one.position, one.is_beyond) = (claim.position, true);
+            one.put(claim.position, claim.bounds);
+            (one.is_beyond, one.is_off_edge) = (true, false);
         }
     }
     Ok(Some(region))
@@ -140,7 +145,7 @@ fn claim<F: Field>(
             corner
         };
         let position = clamped(point, bounds);
-        let made = Claim { candidate, face, position, corners: std::array::from_fn(corner) };
+        let made = Claim { candidate, face, position, bounds, corners: std::array::from_fn(corner) };
         let distance = dot(way, way);
         if best.as_ref().is_none_or(|(least, _)| distance < *least) {
             best = Some((distance, made));

@@ -6,12 +6,18 @@ use super::super::sheet::Sheet;
 use super::crossing::{Crossing, SHARP, dot};
 use super::leaning;
 
-/// The distance from the surface, in cells, from which on an estimate of a crossing tells nothing.
+/// The distance from the crossing, in parts of the edge, from which on an estimate of it tells nothing.
 const OFF: f64 = 1.0 / 16384.0;
+/// What comes on top, in parts of the iso-value: some steps of f32.
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+/// Newton's steps for estimates that are off.
+const STEPS: usize = 2;
 
 /// What decides at all crossed edges of a brick, nearly.
 pub(super) struct SheetProbes {
     found: Vec<DecidedPoint>,
+    /// For each edge, whether its estimate is off the surface, or on the way to it another operand decided.
+    is_off: Vec<bool>,
     /// Points at which field and gradient were evaluated.
     pub(super) asked: u64,
 }
@@ -19,10 +25,10 @@ pub(super) struct SheetProbes {
 impl SheetProbes {
     /// Whether crossings of a sheet differ by what decides, and by their normals; or may do, because the
     /// estimate of one is off the surface. So it is where the field has a kink along the edge.
-    pub(super) fn differ(&self, sheet: &Sheet, iso: f32) -> bool {
+    pub(super) fn differ(&self, sheet: &Sheet) -> bool {
         let edges = sheet.numbers();
         let of = |edge: u32| &self.found[edge as usize];
-        if edges.iter().any(|&edge| of(edge).is_off(iso, sheet.size)) {
+        if edges.iter().any(|&edge| self.is_off[edge as usize]) {
             return true;
         }
         let signature = |edge: u32| of(edge).signature;
@@ -42,29 +48,27 @@ impl SheetProbes {
 type SheetCrossings = (Vec<Option<Vec<Crossing>>>, u64);
 
 /// The field at a point.
-struct DecidedPoint {
+pub(super) struct DecidedPoint {
     value: f32,
     slope: [f64; 3],
-    signature: u32,
+    pub(super) signature: u32,
 }
 
 impl DecidedPoint {
     /// The unit normal away from the inside, if there is one.
-    fn normal(&self) -> Option<[f64; 3]> {
+    pub(super) fn normal(&self) -> Option<[f64; 3]> {
         let length = dot(self.slope, self.slope).sqrt();
         (length > 0.0 && length.is_finite()).then(|| self.slope.map(|c| -c / length))
     }
 
-    /// Whether the point is off the surface by its gradient, in cells of this size.
-    fn is_off(&self, iso: f32, size: f32) -> bool {
-        let reach = dot(self.slope, self.slope).sqrt() * OFF * f64::from(size);
-        let is_near = (f64::from(self.value) - f64::from(iso)).abs() <= reach;
-        !is_near
+    /// How far the point is from the surface along the normal, by its gradient. Inside it is positive.
+    pub(super) fn height(&self, iso: f32) -> f64 {
+        (f64::from(self.value) - f64::from(iso)) / dot(self.slope, self.slope).sqrt()
     }
 }
 
 /// Field, gradient and signature at some points.
-fn decided<F: Field>(
+pub(super) fn decided<F: Field>(
     field: &F,
     region: &F::Region,
     points: &[[f32; 3]],
@@ -93,8 +97,33 @@ pub(super) fn probe<F: Field>(
     iso: f32,
     crossed: &mut CrossedEdges,
 ) -> Result<SheetProbes, F::Error> {
-    let points = crossed.estimated(field, region, iso)?;
-    Ok(SheetProbes { found: decided(field, region, &points)?, asked: points.len() as u64 })
+    let mut points = crossed.estimated(field, region, iso)?;
+    let mut found = decided(field, region, &points)?;
+    let mut asked = points.len() as u64;
+    let is_off = |number: usize, at: &DecidedPoint| {
+        let rise = crossed.get(number as u32).rise_along(at.slope).abs();
+        let is_near =
+            (f64::from(at.value) - f64::from(iso)).abs() <= OFF * rise + ROUNDING * f64::from(iso.abs());
+        !is_near
+    };
+    let mut has_kink = vec![false; points.len()];
+    for _ in 0..STEPS {
+        let off: Vec<usize> = (0..points.len()).filter(|&number| is_off(number, &found[number])).collect();
+        for &number in &off {
+            let DecidedPoint { value, slope, .. } = &found[number];
+            let rise = f64::from(iso) - f64::from(*value);
+            points[number] = crossed.get(number as u32).step(points[number], rise, *slope);
+        }
+        let again: Vec<[f32; 3]> = off.iter().map(|&number| points[number]).collect();
+        asked += again.len() as u64;
+        for (number, at) in off.into_iter().zip(decided(field, region, &again)?) {
+            has_kink[number] |= at.signature != found[number].signature;
+            found[number] = at;
+        }
+    }
+    let both = found.iter().zip(has_kink).enumerate();
+    let is_off = both.map(|(number, (at, has_kink))| has_kink || is_off(number, at)).collect();
+    Ok(SheetProbes { found, is_off, asked })
 }
 
 /// Looks at the crossings of some sheets. `None` for a sheet with a crossing that has no normal. Also returns
