@@ -405,11 +405,11 @@ impl Written {
         self
     }
 
-    /// The same, which nothing below changes, if it is an attribute or a constant.
+    /// The same with another precedence, if it is an attribute or a constant.
     #[must_use]
-    pub fn overriding(mut self) -> Self {
+    pub fn with_precedence(mut self, new: Precedence) -> Self {
         if let Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } = &mut self {
-            *precedence = Precedence::Override;
+            *precedence = new;
         }
         self
     }

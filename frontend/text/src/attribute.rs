@@ -52,7 +52,8 @@ impl Parser<'_> {
         };
         let begins_uv = match word {
             Some(word) => UV_WORDS.contains(&word) && (width == 2 || !is_number(word)),
-            None => self.peek().is(b'{'),
+            // In a style no block follows.
+            None => self.peek().is(b'{') || self.peek().is(b'}'),
         };
         if begins_uv && (width == 2 || name == "uv") {
             return self.uv(at, name, width).map(WrittenAttribute::Uv);

@@ -11,9 +11,9 @@ use super::parse::ROOT;
 use super::part::PART;
 use super::particles::AT;
 use super::words::{
-    COMMON_FIELDS, EMPTY, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
+    COMMON_FIELDS, EMPTY, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved,
 };
-use jbt_model::attribute::{AttributeGroup, Precedence};
+use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{CombinatorKind, Syntax};
 use jbt_model::diagnostic::escape;
 use jbt_model::expression::{Formula, write as write_formula};
@@ -25,15 +25,16 @@ use jbt_model::orientation::Orientation;
 use jbt_model::parameter::{Parameter, ParameterRange};
 use jbt_model::particles::{ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
-use jbt_model::word::{CONSTANT, OVERRIDE, is_identifier, is_statement};
-use jbt_model::written::{
-    FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
-    WrittenTextured, WrittenUv,
-};
+use jbt_model::word::{CONSTANT, STYLE, is_identifier, is_statement};
+use jbt_model::written::{FieldNumber, ParticleRadius, Radius, Written, WrittenFalloff, WrittenParticles};
 
+mod attribute;
 mod list;
+mod style;
 
+use attribute::{attribute, before};
 use list::list;
+use style::Styles;
 
 /// Operators below this depth are printed on one line.
 const DEEPEST: usize = 12;
@@ -66,8 +67,11 @@ pub fn print(model: &Model) -> String {
         }
     }
     out.push('\n');
-    let (order, names) = shared(model);
-    let printer = Printer { names, definitions: free_prefix(model) };
+    let definitions = free_prefix(model);
+    let styles = Styles::of(&model.root);
+    styles.print(&mut out, model, &definitions);
+    let (order, names) = shared(model, &styles);
+    let printer = Printer { names, definitions, styles };
     for tree in order {
         let name = &printer.names[&tree.identity()];
         comment(&mut out, model, &format!("let {name}"));
@@ -153,7 +157,7 @@ fn free_prefix(model: &Model) -> String {
 
 /// The subtrees that stand by themselves, children before parents, and the name of each by its identity:
 /// those that have more than one use, that stand in a formula, or that have a comment.
-fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
+fn shared<'a>(model: &'a Model, styles: &Styles) -> (Vec<&'a Tree>, HashMap<usize, String>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
     let mut alone = HashSet::new();
     let mut finished = Vec::new();
@@ -177,7 +181,10 @@ fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
             if node.name().is_some_and(is_said) {
                 alone.insert(tree.identity());
             }
-            stack.extend(node.children().iter().rev().map(|child| (child, false)));
+            match styles.used(tree) {
+                Some(style) => stack.push((style.below, false)),
+                None => stack.extend(node.children().iter().rev().map(|child| (child, false))),
+            }
         }
     }
     finished.retain(|tree| uses[&tree.identity()] > 1 || alone.contains(&tree.identity()));
@@ -210,6 +217,7 @@ struct Printer {
     names: HashMap<usize, String>,
     /// What names of definitions begin with.
     definitions: String,
+    styles: Styles,
 }
 
 impl Printer {
@@ -257,6 +265,12 @@ impl Printer {
 
     /// Prints a node's head and leaves the rest of it on the stack.
     fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
+        if let Some(style) = self.styles.used(tree) {
+            before(out, style.precedence);
+            let _ = write!(out, "{STYLE} {} {{ ", style.name);
+            stack.extend([Item::Text(" }"), Item::Tree(style.below, depth)]);
+            return;
+        }
         let children = tree.node().children();
         let child = |place: usize| match children.get(place) {
             Some(child) => self.names[&child.identity()].clone(),
@@ -393,64 +407,6 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
     let tuple = formula.form.results.len() > 1;
     let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, tuple);
     out.push_str(" }");
-}
-
-/// What stands before an attribute or a constant.
-fn before(out: &mut String, precedence: Precedence) {
-    match precedence {
-        Precedence::Nearest => {}
-        Precedence::Override => {
-            let _ = write!(out, "{OVERRIDE} ");
-        }
-    }
-}
-
-fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    if is_reserved(name) {
-        let _ = write!(out, "{GROUP_NODE} ");
-    }
-    out.push_str(name);
-    match value {
-        WrittenAttribute::Numbers(numbers) => {
-            let text = group_values(numbers);
-            let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
-            // A parameter that is called like what computes.
-            let hidden = first.is_some_and(|word| word == EXPRESSION || texture_named(word).is_some());
-            let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
-        }
-        WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b }) => {
-            let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
-            for (described, value) in texture.fields().iter().zip(fields) {
-                described.write(out, described.name, value);
-            }
-            out.push_str(" }");
-        }
-        WrittenAttribute::Uv(map) => uv(out, map),
-        WrittenAttribute::Expressed(formula) => {
-            out.push(' ');
-            expression(out, formula, |place| format!("n{place}"), definitions);
-        }
-    }
-}
-
-/// A map of uv, without the parts that change nothing.
-fn uv(out: &mut String, map: &WrittenUv) {
-    let identity = WrittenUv::default();
-    if !same_numbers(&map.scale, &identity.scale) {
-        let _ = write!(out, " scale {}", vector(&map.scale));
-    }
-    if !same_numbers(std::slice::from_ref(&map.degrees), &[identity.degrees]) {
-        let _ = write!(out, " rotate {}", map.degrees);
-    }
-    if !same_numbers(&map.shift, &identity.shift) {
-        let _ = write!(out, " shift {}", vector(&map.shift));
-    }
-}
-
-/// Whether numbers are plain and have the same bits.
-fn same_numbers(a: &[Number], b: &[Number]) -> bool {
-    let plain = |number: &Number| (!number.depends_on_parameters()).then(|| number.value().to_bits());
-    a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
 }
 
 /// The falloff of a primitive, or of particles.
