@@ -52,7 +52,7 @@ pub use jbt_model::skeleton::{Skeleton, SkeletonKind};
 pub use jbt_model::texture::{Texture, TextureKind};
 pub use jbt_model::tour::{Tour, TourEvent, TourStep};
 pub use jbt_model::traverse::Visit;
-pub use jbt_model::tree::{Node, Tree};
+pub use jbt_model::tree::{Node, StyleUse, Tree};
 pub use jbt_model::warp::{Warp, WarpKind};
 pub use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,

@@ -9,6 +9,8 @@ use crate::affine::sin_cos_degrees;
 use crate::expression::Expression;
 use crate::texture::Texture;
 
+pub use crate::precedence::Precedence;
+
 /// How the leaves' values become the value at a point.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Mixing {
@@ -30,16 +32,6 @@ impl Mixing {
             Self::Dominant => "dominant",
         }
     }
-}
-
-/// Which of several values of one name above a leaf counts.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum Precedence {
-    /// The one that is nearest to the leaf, unless one above overrides it.
-    #[default]
-    Nearest,
-    /// This one, whatever stands below; of several that override, the one that is nearest to the root.
-    Override,
 }
 
 /// A group of 1 to [`MAX_ATTRIBUTE_WIDTH`](jbt_ir::limits::MAX_ATTRIBUTE_WIDTH) reals with a name.

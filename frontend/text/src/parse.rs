@@ -137,6 +137,7 @@ impl<'a> Parser<'a> {
         let word = self.text(token);
         let name = self.peek_behind();
         let key = match word {
+            _ if self.begins_style(word) => format!("{word} {}", self.text(name)),
             _ if self.begins_definition(word) => return,
             _ if self.begins_part(word) => format!("{PART} {}", self.part_name()),
             "jbt" | "iso" | "origin" => word.to_owned(),

@@ -216,7 +216,7 @@ class Model(ModelMembers):
         return Model(self._native.constant(name, value))
 
     def overriding(self) -> Model:
-        """The same, but the attribute or constant that it begins with counts for all leaves below, whatever
+        """The same, but the attribute, constant or style that it begins with counts for all leaves below, whatever
         stands nearer to them. Of several that override, the one that was put around the others counts.
 
         >>> import jbt
@@ -225,6 +225,18 @@ class Model(ModelMembers):
         [{'part': 1}]
         """
         return Model(self._native.overriding())
+
+    def styled(self, name: str, style: Callable[[Model], Model]) -> Model:
+        """With attributes and constants that have a name together: what `style` puts around the model. Texts
+        have it once, as `style`.
+
+        >>> import jbt
+        >>> oak = lambda model: model.constant("material", "oak").color((0.5, 0.25, 0.125))
+        >>> bowl = jbt.point(radius=1).styled("oak", oak)
+        >>> 'style oak = { color (0.5 0.25 0.125) constant material "oak" }' in str(bowl)
+        True
+        """
+        return Model(style(self)._native.styled(name, self._native))
 
     def textured(self, name: str, pattern: _jbt.Pattern, a: Reals, b: Reals) -> Model:
         """An attribute by a pattern: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the
