@@ -47,6 +47,7 @@ pub use jbt_model::field::{Field, FieldKind, FieldValue};
 pub use jbt_model::kind::{NodeKind, Primitive};
 pub use jbt_model::map::MapKind;
 pub use jbt_model::member::{Lengths, Matrix, Member, Positions};
+pub use jbt_model::owner::LeafWays;
 pub use jbt_model::particles::{NumberArray, ParticleValues, Particles, PerParticle};
 pub use jbt_model::skeleton::{Skeleton, SkeletonKind};
 pub use jbt_model::texture::{Texture, TextureKind};

@@ -166,7 +166,7 @@ impl<'a> Parser<'a> {
                 self.combinator(start, CombinatorKind::Ricci)
             }
             _ if MapKind::named(word).next().is_some() => self.map(start, word),
-            GROUP_NODE => self.given_node(start, |parser, nearest| parser.named_attribute(nearest)),
+            GROUP_NODE => self.given_node(start, Self::named_attribute),
             _ if self.group(word).is_some() => {
                 self.given_node(start, |parser, nearest| parser.attribute((start, word), nearest))
             }
@@ -174,7 +174,7 @@ impl<'a> Parser<'a> {
             _ if self.is_loop(word) => self.for_node(start),
             _ if self.is_condition(word) => self.if_node(start),
             _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
-            CONSTANT => self.given_node(start, |parser, nearest| parser.constant(nearest)),
+            CONSTANT => self.given_node(start, Self::constant),
             STYLE => self.style_node(start, Precedence::Nearest),
             OVERRIDE => self.override_node(start),
             EMPTY => {

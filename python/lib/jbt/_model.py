@@ -216,8 +216,9 @@ class Model(ModelMembers):
         return Model(self._native.constant(name, value))
 
     def overriding(self) -> Model:
-        """The same, but the attribute, constant or style that it begins with counts for all leaves below, whatever
-        stands nearer to them. Of several that override, the one that was put around the others counts.
+        """The same, but the attribute, constant or style that it begins with counts for all leaves below,
+        whatever stands nearer to them. Of several that override, the one that was put around the others
+        counts.
 
         >>> import jbt
         >>> pin = jbt.point(radius=1).constant("part", 17)
