@@ -249,7 +249,12 @@ impl PyModel {
         if self.inner().attributes.iter().any(|group| &*group.name == name) {
             return self.clone();
         }
-        let group = AttributeGroup { name: name.into(), default: vec![0.0; width], mixing: Mixing::Blend };
+        let group = AttributeGroup {
+            name: name.into(),
+            default: vec![0.0; width],
+            mixing: Mixing::Blend,
+            ..AttributeGroup::color()
+        };
         let mut model = self.inner().clone();
         model.attributes.push(group);
         self.edited(model)

@@ -279,6 +279,10 @@ impl Question for Owners {
         way
     }
 
+    fn turned(&self, _tree: &CheckedTree, way: OwnerWay, _node: NodeId, _p: DVec3) -> OwnerWay {
+        way
+    }
+
     fn primitive(&self, leaf: &Primitive, p: DVec3, way: &OwnerWay) -> OwnerAnswer {
         let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
         OwnerAnswer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)

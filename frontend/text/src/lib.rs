@@ -22,7 +22,7 @@
 //!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
 //!              [ "in" expression ".." expression [ "step" expression ] ] [ QUOTED ]    its range and its label
-//!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
+//!            | "attribute" NAME ( width | "direction" ) [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" ( node | item )
 //!            | "style" NAME "=" "{" { head } "}"              attributes and constants that have a name together
 //!            | "def" NAME "(" [ NAME [ "=" item ] { "," NAME [ "=" item ] } ] ")" body

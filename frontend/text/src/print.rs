@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use super::parse::ROOT;
 use super::part::PART;
 use super::words::{EMPTY, WEIGHTED};
-use jbt_model::attribute::AttributeGroup;
+use jbt_model::attribute::{AttributeGroup, DIRECTION};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
@@ -109,8 +109,8 @@ pub(super) fn print_parameter(out: &mut String, parameter: &Parameter) {
 }
 
 fn declaration(out: &mut String, group: &AttributeGroup) {
-    let (width, default, mixing) =
-        (group.width(), group_values(group.default.iter().copied()), group.mixing.name());
+    let width = if group.turns() { DIRECTION.to_owned() } else { group.width().to_string() };
+    let (default, mixing) = (group_values(group.default.iter().copied()), group.mixing.name());
     let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
 }
 

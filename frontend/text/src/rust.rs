@@ -19,7 +19,7 @@ mod number;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
 
-use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::attribute::{AttributeGroup, GroupKind, Mixing};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
@@ -217,8 +217,15 @@ fn declaration(group: &AttributeGroup) -> String {
         Mixing::Dominant => "Dominant",
     };
     let default = list(group.default.iter().copied().map(literal));
-    format!(
-        "            AttributeGroup {{ name: {:?}.into(), default: vec!{default}, mixing: Mixing::{mixing} }},\n",
-        &*group.name
-    )
+    let name = &*group.name;
+    match group.kind {
+        GroupKind::Numbers => format!(
+            "            AttributeGroup {{ name: {name:?}.into(), default: vec!{default}, mixing: Mixing::{mixing}, \
+             ..AttributeGroup::color() }},\n"
+        ),
+        GroupKind::Direction => format!(
+            "            AttributeGroup {{ mixing: Mixing::{mixing}, \
+             ..AttributeGroup::direction({name:?}, {default}) }},\n"
+        ),
+    }
 }

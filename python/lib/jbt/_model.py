@@ -33,11 +33,13 @@ class Group:
         name: its name.
         default: the value of leaves without the attribute; as long as the group is wide.
         mixing: "blend", the mean by weights, or "dominant", that of the leaf with the largest weight.
+        direction: whether values are directions, which turn with maps and warps.
     """
 
     name: str
     default: tuple[float, ...]
     mixing: str
+    direction: bool = False
 
 
 @dataclass(frozen=True)
@@ -335,13 +337,25 @@ class Model(ModelMembers):
     @property
     def groups(self) -> tuple[Group, ...]:
         """Its groups of attributes, `color` first."""
-        return tuple(Group(name, tuple(default), mixing) for name, default, mixing in self._native.groups())
+        return tuple(Group(name, tuple(default), *rest) for name, default, *rest in self._native.groups())
 
     def group(
-        self, name: str, default: Sequence[float], *, mixing: Literal["blend", "dominant"] = "blend"
+        self,
+        name: str,
+        default: Sequence[float],
+        *,
+        mixing: Literal["blend", "dominant"] = "blend",
+        direction: bool = False,
     ) -> Model:
-        """The same with a group of attributes declared so; it is as wide as its default."""
-        return Model(self._native.group(name, [float(number) for number in default], mixing))
+        """The same with a group of attributes declared so; it is as wide as its default. A direction turns
+        with maps and warps.
+
+        >>> import jbt
+        >>> beam = jbt.point(radius=1).group("grain", (0, 0, 0), direction=True).attribute("grain", (1, 0, 0))
+        >>> [float(x) for x in beam.rotate("z", 90).attributes([[0, 0, 0]])["grain"][0]]
+        [0.0, 1.0, 0.0]
+        """
+        return Model(self._native.group(name, [float(number) for number in default], mixing, direction))
 
     @property
     def parameters(self) -> dict[str, float]:
