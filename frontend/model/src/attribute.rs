@@ -41,7 +41,7 @@ pub enum GroupKind {
     #[default]
     Numbers,
     /// Directions, of 3 reals: that of a line element, as the grain of wood or a fibre. Affine maps above the
-    /// node that gives one turn it by their linear part, warps by the derivative of what they do at the point.
+    /// node that gives one turn it by their linear part, warps by the derivative of what they do there.
     /// It is not normalised again: where a line is stretched, its direction is longer.
     Direction,
 }

@@ -155,21 +155,30 @@ pub(crate) fn ask_at<Q: Question>(
                 question.marked(answer, mark);
             }
             DescentTask::Answer(id, p, way) => {
-                let node = tree.node(id);
-                let children = answers.split_off(answers.len() - node.children.len());
-                answers.push(match &node.kind {
-                    NodeKind::Combine(combinator) => question.combine(*combinator, &children),
-                    NodeKind::Expression(formula) => question.express(formula, p, &way, &children),
-                    NodeKind::Primitive(_)
-                    | NodeKind::Particles(_)
-                    | NodeKind::Select(_)
-                    | NodeKind::Affine(_)
-                    | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. }
-                    | NodeKind::Constant { .. } => unreachable!("these answer at once"),
-                });
+                let children = answers.split_off(answers.len() - tree.node(id).children.len());
+                answers.push(joined(question, &tree.node(id).kind, (p, &way), &children));
             }
         }
     }
     answers.pop().expect("the root has answered")
+}
+
+/// The answer of a node whose children have answered.
+fn joined<Q: Question>(
+    question: &Q,
+    kind: &NodeKind,
+    (p, way): (DVec3, &Q::Way),
+    children: &[Q::Answer],
+) -> Q::Answer {
+    match kind {
+        NodeKind::Combine(combinator) => question.combine(*combinator, children),
+        NodeKind::Expression(formula) => question.express(formula, p, way, children),
+        NodeKind::Primitive(_)
+        | NodeKind::Particles(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => unreachable!("these answer at once"),
+    }
 }

@@ -44,8 +44,7 @@ pub(super) fn slopes(function: &Function) -> Cow<'_, Function> {
     let mut differentiation = Differentiation { differentiated, function, tangent };
     let results = translate(function, &mut differentiation);
     let values = results.into_iter().map(|result| result.real().value);
-    let outputs: Vec<(String, Value)> =
-        function.outputs.iter().map(|name| name.clone()).zip(values).collect();
+    let outputs: Vec<(String, Value)> = function.outputs.iter().cloned().zip(values).collect();
     Cow::Owned(differentiation.tangent.builder.finish(&outputs))
 }
 
