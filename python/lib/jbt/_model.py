@@ -202,7 +202,7 @@ class Model(ModelMembers):
         >>> import jbt
         >>> ball = jbt.point(radius=1).attribute("rough", 0.9)
         >>> ball.groups[1]
-        Group(name='rough', default=(0.0,), mixing='blend')
+        Group(name='rough', default=(0.0,), mixing='blend', direction=False)
         """
         return Model(self._native.attribute(name, values))
 
@@ -337,7 +337,10 @@ class Model(ModelMembers):
     @property
     def groups(self) -> tuple[Group, ...]:
         """Its groups of attributes, `color` first."""
-        return tuple(Group(name, tuple(default), *rest) for name, default, *rest in self._native.groups())
+        return tuple(
+            Group(name, tuple(default), mixing, direction)
+            for name, default, mixing, direction in self._native.groups()
+        )
 
     def group(
         self,
@@ -351,9 +354,8 @@ class Model(ModelMembers):
         with maps and warps.
 
         >>> import jbt
-        >>> beam = jbt.point(radius=1).group("grain", (0, 0, 0), direction=True).attribute("grain", (1, 0, 0))
-        >>> [float(x) for x in beam.rotate("z", 90).attributes([[0, 0, 0]])["grain"][0]]
-        [0.0, 1.0, 0.0]
+        >>> jbt.point(radius=1).group("grain", (0, 0, 1), direction=True).groups[1].direction
+        True
         """
         return Model(self._native.group(name, [float(number) for number in default], mixing, direction))
 
