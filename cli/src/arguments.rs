@@ -143,7 +143,9 @@ Examples:
   jbt mesh hero.jbt --cell 0.05 --region -1,-1,-1,1,1,1 -o corner.stl --json
   cat hero.jbt | jbt mesh - -o - --format obj | less
   jbt mesh 'frame_{}.vtk' -o 'frame_{}.glb' --radius 0.02 --values heat --color-by heat --jobs 2
-                                    all frames of a sequence that have no newer result")]
+                                    all frames of a sequence that have no newer result
+  jbt mesh robot.jbt --parts -o 'robot_{}.stl'
+                                    a file for each part, with its name")]
 pub struct MeshArguments {
     /// What to mesh.
     #[command(flatten)]
@@ -187,6 +189,9 @@ pub struct MeshArguments {
     /// frames of a sequence look alike with it
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, requires = "color_by", allow_hyphen_values = true)]
     pub color_range: Option<ValueRange>,
+    /// A file for each part of the scene: its name takes the place of {} in -o
+    #[arg(long)]
+    pub parts: bool,
     /// Frames of a sequence that are made at once
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: u16,
@@ -311,6 +316,7 @@ pub struct EvalArguments {
 const EVAL_HELP: &str = "\
 The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
 `nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: {columns}.
+--query owner.path adds the number of the leaf that decides and, last, the way down to it in words.
 
 Examples:
   jbt eval hero.jbt --points points.csv --query all -o answers.csv

@@ -148,7 +148,7 @@ impl Checked {
         let support = tree.support();
         let bounds =
             (!support.is_empty() && support.is_finite()).then(|| [support.low(), support.high()].concat());
-        let attribute = |group: &AttributeGroup| json!({ "name": &*group.name, "width": group.width(), "mixing": group.mixing.name() });
+        let attribute = |group: &AttributeGroup| json!({ "name": &*group.name, "width": group.width(), "mixing": group.mixing.name(), "direction": group.turns() });
         let controls = tree.parameters().iter().map(|p| (p.name().to_owned(), control(p)));
         json!({
             "nodes": tree.nodes().len(),
@@ -270,5 +270,6 @@ fn bounds(support: Bounds) -> String {
 }
 
 fn attribute(group: &AttributeGroup) -> String {
-    format!("{} ({} x f32, {})", escape(&group.name), group.width(), group.mixing.name())
+    let what = if group.turns() { ", direction" } else { "" };
+    format!("{} ({} x f32, {}{what})", escape(&group.name), group.width(), group.mixing.name())
 }

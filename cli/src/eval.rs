@@ -6,7 +6,8 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write as _};
 
-use jbt::{Evaluator, Samples};
+use jbt::tree::{LeafWays, OWNER};
+use jbt::{CheckedTree, Evaluator, NodeId, Samples};
 use rayon::prelude::*;
 
 use crate::arguments::EvalArguments;
@@ -22,6 +23,48 @@ use crate::threads::Threads;
 /// Points that a thread answers at once.
 const BATCH: usize = 1 << 14;
 
+/// The longest way down to a leaf that is written, in bytes: a chain of a million nodes has a longer one.
+const LONGEST_PATH: usize = 1000;
+
+/// What a line says about a point.
+struct AnswerTable<'a> {
+    evaluator: &'a Evaluator,
+    paths: Option<OwnerColumn<'a>>,
+}
+
+/// The ways down to the leaves that decide.
+struct OwnerColumn<'a> {
+    name: &'static str,
+    /// The plane with the numbers of leaves.
+    plane: Option<usize>,
+    ways: LeafWays<'a>,
+}
+
+impl<'a> OwnerColumn<'a> {
+    fn new(name: &'static str, evaluator: &Evaluator, tree: &'a CheckedTree) -> Self {
+        let plane = evaluator.layout().attributes().find(|(group, ..)| *group == OWNER);
+        Self { name, plane: plane.map(|(_, plane, _)| plane), ways: LeafWays::new(tree) }
+    }
+
+    /// The field of the table for a point: empty where no leaf decides.
+    fn at(&self, samples: &Samples, index: usize) -> String {
+        let number =
+            self.plane.and_then(|plane| samples.planes().get(plane)).map_or(-1.0, |plane| plane[index]);
+        // Numbers of nodes are whole in f32.
+        let leaf = (number >= 0.0).then_some(NodeId(number as u32));
+        quoted(&leaf.and_then(|leaf| self.ways.path(leaf, LONGEST_PATH)).unwrap_or_default())
+    }
+}
+
+/// Text as a field of CSV (RFC 4180): in quotes where it has a comma, a quote or the end of a line.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     if is_standard(&arguments.points) && is_standard(&arguments.scene.path) {
@@ -34,10 +77,16 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     scene.warn(quiet);
     let tree = scene.check_for(&arguments.query)?;
     let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query.query)?;
+    // Owners are numbered by the nodes of the scene, and not of what answers for it.
+    let whole = scene.check()?;
+    let answers = AnswerTable {
+        evaluator: &evaluator,
+        paths: arguments.query.text_column().map(|name| OwnerColumn::new(name, &evaluator, &whole)),
+    };
     let threads = Threads::new(arguments.threads);
     if is_standard(&arguments.points) {
         return stream(
-            &evaluator,
+            &answers,
             PointReader::new(io::stdin().lock(), "<stdin>".to_owned())?,
             None,
             &threads,
@@ -50,12 +99,12 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let file = File::open(&arguments.points).map_err(fail)?;
     let length = file.metadata().map_err(fail)?.len();
     let points = PointReader::new(BufReader::with_capacity(1 << 16, file), name)?;
-    stream(&evaluator, points, Some(length), &threads, &destination, quiet)
+    stream(&answers, points, Some(length), &threads, &destination, quiet)
 }
 
 /// Evaluates batches, one on each thread, and writes the answers in the order of the points.
 fn stream(
-    evaluator: &Evaluator,
+    table: &AnswerTable<'_>,
     mut points: PointReader<impl BufRead>,
     length: Option<u64>,
     threads: &Threads,
@@ -64,8 +113,9 @@ fn stream(
 ) -> Result<(), Failure> {
     let mut output = Output::open(destination)?;
     let mut progress = ProgressLine::new("evaluating", quiet);
-    let names = evaluator.layout().names().join(",");
-    writeln!(output, "x,y,z,{names}").map_err(|error| output.failure(error))?;
+    let names = table.evaluator.layout().names().iter().map(String::as_str);
+    let names: Vec<&str> = names.chain(table.paths.as_ref().map(|paths| paths.name)).collect();
+    writeln!(output, "x,y,z,{}", names.join(",")).map_err(|error| output.failure(error))?;
     loop {
         let mut batches = Vec::new();
         while batches.len() < threads.count() {
@@ -78,8 +128,7 @@ fn stream(
         if batches.is_empty() {
             return output.finish();
         }
-        let answers: Vec<_> =
-            threads.run(|| batches.par_iter().map(|batch| answers(evaluator, batch)).collect());
+        let answers: Vec<_> = threads.run(|| batches.par_iter().map(|batch| answers(table, batch)).collect());
         for text in answers {
             output.write_all(&text?).map_err(|error| output.failure(error))?;
         }
@@ -90,20 +139,27 @@ fn stream(
 }
 
 /// The lines of some points.
-fn answers(evaluator: &Evaluator, points: &[[f64; 3]]) -> Result<Vec<u8>, Failure> {
+fn answers(table: &AnswerTable<'_>, points: &[[f64; 3]]) -> Result<Vec<u8>, Failure> {
+    let evaluator = table.evaluator;
     let mut local = evaluator.points();
     points.iter().for_each(|&point| local.push_world(point));
     let mut samples = evaluator.samples();
     evaluator.eval(&local, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
     let mut text = Vec::new();
     let is_far = !evaluator.origin().is_world();
-    write(&mut text, (points, is_far), &samples).map_err(|error| Failure::Defect(error.to_string()))?;
+    write(&mut text, (points, is_far), &samples, table.paths.as_ref())
+        .map_err(|error| Failure::Defect(error.to_string()))?;
     Ok(text)
 }
 
 /// One line for each point. Numbers are the shortest decimals that read back as the same f32; coordinates of
 /// a model that is far away, as the same f64.
-fn write(output: &mut Vec<u8>, (points, is_far): (&[[f64; 3]], bool), samples: &Samples) -> io::Result<()> {
+fn write(
+    output: &mut Vec<u8>,
+    (points, is_far): (&[[f64; 3]], bool),
+    samples: &Samples,
+    paths: Option<&OwnerColumn<'_>>,
+) -> io::Result<()> {
     for (index, &[x, y, z]) in points.iter().enumerate() {
         if is_far {
             write!(output, "{x},{y},{z}")?;
@@ -114,7 +170,28 @@ fn write(output: &mut Vec<u8>, (points, is_far): (&[[f64; 3]], bool), samples: &
         for plane in samples.planes() {
             write!(output, ",{}", plane[index])?;
         }
+        if let Some(paths) = paths {
+            write!(output, ",{}", paths.at(samples, index))?;
+        }
         writeln!(output)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_quoted_where_a_table_needs_it() {
+        for (text, expected) in [
+            ("union.0/arm", "union.0/arm"),
+            ("left arm", "left arm"),
+            ("left, big.1/\"x\"", "\"left, big.1/\"\"x\"\"\""),
+            ("a\nb", "\"a\nb\""),
+            ("", ""),
+        ] {
+            assert_eq!(quoted(text), expected);
+        }
+    }
 }

@@ -28,6 +28,7 @@ mod mesh;
 mod message;
 mod output;
 mod overlaps;
+mod part_files;
 mod points;
 mod progress;
 mod render;

@@ -4,14 +4,15 @@ use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
-use jbt::mesh::{Mesh, Simplify, ThinReport};
-use jbt::{Box3, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized};
+use jbt::mesh::{Mesh, MeshPiece, Simplify, ThinReport};
+use jbt::{Box3, CheckedTree, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized, Tree};
 use serde_json::json;
 
 use crate::arguments::{MeshArguments, Switch};
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Output, grouped, plural, warn};
+use crate::output::{Destination, Output, grouped, plural, warn};
+use crate::part_files;
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
 use crate::sequence;
@@ -23,50 +24,52 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     if sequence::is_sequence(&arguments.scene.path) {
         return sequence::run(arguments, quiet);
     }
+    if arguments.parts {
+        part_files::check(arguments.output.output.as_deref())?;
+    }
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
     let mut options = options(arguments, destination.kind)?;
-    let settings = Polygonize {
-        thin_parts: !arguments.no_thin,
-        verify: arguments.verify,
-        sharp: arguments.sharp == Switch::On,
-        ..lattice::settings(&arguments.lattice)?
-    };
+    let settings = settings(arguments)?;
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
+    let parts = || part_files::destinations(&destination, &arguments.scene.path, &tree);
+    let parts = arguments.parts.then(parts).transpose()?;
     options.name = scene.part_name(&arguments.scene.options.parts).map(str::to_owned);
     options.constants = tree.constants_of_pieces();
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
-    let mut work = || progress.run(settings.mesh(&compiler, &tree));
-    let mut made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+    let mut mesh = |tree: &CheckedTree| {
+        let mut work = || progress.run(settings.mesh(&compiler, tree));
+        arguments.work.run(&mut work).map_err(|error| scene.failure(&error))
+    };
+    let mut made = mesh(&tree)?;
     let height = arguments.flat_bottom;
     if let Some(flat) = height.map(|height| flattened(&scene.model, &made, height)).transpose()?.flatten() {
         let tree = flat.check().map_err(|error| scene.failure(&error))?;
         options.constants = tree.constants_of_pieces();
-        let mut work = || progress.run(settings.mesh(&compiler, &tree));
-        made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
+        made = mesh(&tree)?;
     }
     drop(progress);
-    if let Some(name) = &arguments.color_by {
-        shade::shade(&mut made.mesh, name, arguments.ramp, arguments.color_range)?;
-    }
-    if let Some(until) = arguments.simplify {
-        made.mesh = simplified(&made.mesh, until)?;
-    }
+    shaded(arguments, &mut made.mesh)?;
 
     // The file is written while the mesh is measured.
-    let mut output = Output::open(&destination)?;
-    let mut write = || export::write_with(&made.mesh, destination.kind, &options, &mut output);
+    let places = parts.as_deref().unwrap_or(std::slice::from_ref(&destination));
+    let mut outputs = places.iter().map(Output::open).collect::<Result<Vec<_>, _>>()?;
+    let mut write = || match parts {
+        Some(_) => part_files::write(&made.mesh, destination.kind, &options, &mut outputs),
+        None => export::write_with(&made.mesh, destination.kind, &options, &mut outputs[0])
+            .map_err(|error| (0, error)),
+    };
     let mut both = || rayon::join(&mut write, || MeshMeasures::new(&made));
     let (written, measures) = arguments.work.run(&mut both);
-    written.map_err(|error| match error {
-        ExportError::Write(error) => output.failure(error),
+    written.map_err(|(place, error)| match error {
+        ExportError::Write(error) => outputs[place].failure(error),
         error => scene.failure(&error),
     })?;
-    output.finish()?;
+    outputs.into_iter().try_for_each(Output::finish)?;
 
     let mut warnings = warnings(&made, destination.kind);
     if !quiet {
@@ -79,10 +82,32 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         format: destination.kind,
         options,
         warnings: &warnings,
+        parts: parts.as_deref(),
         total: start.elapsed(),
     };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
+}
+
+/// Colours, and fewer triangles, as far as these are wanted.
+fn shaded(arguments: &MeshArguments, mesh: &mut Mesh) -> Result<(), Failure> {
+    if let Some(name) = &arguments.color_by {
+        shade::shade(mesh, name, arguments.ramp, arguments.color_range)?;
+    }
+    if let Some(until) = arguments.simplify {
+        *mesh = simplified(mesh, until)?;
+    }
+    Ok(())
+}
+
+/// How the mesh is to be made.
+fn settings(arguments: &MeshArguments) -> Result<Polygonize, Failure> {
+    Ok(Polygonize {
+        thin_parts: !arguments.no_thin,
+        verify: arguments.verify,
+        sharp: arguments.sharp == Switch::On,
+        ..lattice::settings(&arguments.lattice)?
+    })
 }
 
 /// How the file is to be written.
@@ -133,7 +158,14 @@ fn flattened(model: &Model, made: &Polygonized, height: f64) -> Result<Option<Mo
         return Err(Failure::Usage(message));
     }
     low[up] = lowest[up] + height;
-    Ok(Some(Model { root: model.root.within(low, high), ..model.clone() }))
+    let parts = model.root.parts();
+    // Parts stay parts.
+    let named = |part| (Tree::node(part).name().unwrap_or_default(), part.within(low, high));
+    let root = match parts {
+        [] => model.root.within(low, high),
+        parts => Tree::of_parts(parts.iter().map(named)),
+    };
+    Ok(Some(Model { root, ..model.clone() }))
 }
 
 /// What may not be as people expect.
@@ -207,6 +239,8 @@ struct MeshSummary<'a> {
     format: Format,
     options: ExportOptions,
     warnings: &'a [String],
+    /// The files of parts, if each has one.
+    parts: Option<&'a [Destination<Format>]>,
     total: Duration,
 }
 
@@ -252,10 +286,24 @@ impl MeshSummary<'_> {
             "cell": lattice.spacing(),
             "cells": lattice.cells(),
             "origin": mesh.origin,
+            "parts": self.parts.map(|places| self.parts_json(places)),
             "compile_ms": milliseconds(self.made.compile_time),
             "total_ms": milliseconds(self.total),
             "warnings": self.warnings,
         })
+    }
+
+    /// The files of parts, for machines.
+    fn parts_json(&self, places: &[Destination<Format>]) -> serde_json::Value {
+        let part = |(piece, place): (&MeshPiece<'_>, &Destination<Format>)| {
+            json!({
+                "name": piece.name,
+                "file": place.path.display().to_string(),
+                "triangles": piece.triangles.len(),
+                "vertices": piece.vertices.len(),
+            })
+        };
+        self.made.mesh.pieces().iter().zip(places).map(part).collect()
     }
 
     /// The size of the mesh in words: `2 x 2 x 2, volume 4.18854, area 12.5661`.
@@ -280,6 +328,7 @@ impl MeshSummary<'_> {
         format!(
             "{}: {}, {}, {closed}\n\
              \x20 size         {}\n\
+             {}\
              \x20 lattice      {}{}\n\
              \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
              \x20 primitives   {} evaluated, {} over boxes, by engine {}\n\
@@ -289,6 +338,7 @@ impl MeshSummary<'_> {
             plural(mesh.triangles.len() as u64, "triangle", "triangles"),
             plural(mesh.positions.len() as u64, "vertex", "vertices"),
             self.measures(),
+            self.parts.map_or_else(String::new, parts_line),
             lattice::describe(lattice, ModelOrigin::new(mesh.origin)),
             lattice::origin_line(ModelOrigin::new(mesh.origin)),
             grouped(report.field_evaluations + report.jump_evaluations),
@@ -303,6 +353,17 @@ impl MeshSummary<'_> {
             milliseconds(self.total),
         )
     }
+}
+
+/// The files of parts, for people.
+fn parts_line(places: &[Destination<Format>]) -> String {
+    const SHOWN: usize = 6;
+    let mut names: Vec<String> =
+        places.iter().take(SHOWN).map(|place| escape(&place.path.display().to_string())).collect();
+    if places.len() > SHOWN {
+        names.push(format!("and {} more", places.len() - SHOWN));
+    }
+    format!("  files        {}\n", names.join(", "))
 }
 
 /// Thin parts, for machines.

@@ -22,6 +22,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
+    arguments.query.check_numbers()?;
     let tree = scene.check_for(&arguments.query)?;
     let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;

@@ -19,8 +19,8 @@ use crate::arguments::MeshArguments;
 use crate::failure::Failure;
 use crate::output::{plural, warn};
 
-/// What stands for the number of a frame.
-const BRACES: &str = "{}";
+/// What stands for the number of a frame, or the name of a part.
+pub const BRACES: &str = "{}";
 
 /// A file of a sequence.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -38,6 +38,11 @@ pub fn is_sequence(scene: &Path) -> bool {
 /// Meshes all frames.
 pub fn run(arguments: &MeshArguments, quiet: bool) -> Result<(), Failure> {
     let scene = &arguments.scene.path;
+    if arguments.parts {
+        let message =
+            format!("--parts puts the name of a part where {BRACES} is, and a sequence has its number there");
+        return Err(Failure::Usage(message));
+    }
     let out = arguments.output.output.as_deref().filter(|out| out.to_string_lossy().contains(BRACES));
     let Some(out) = out else {
         let name = scene.display();

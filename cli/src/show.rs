@@ -30,6 +30,7 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     }
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
+    arguments.query.check_numbers()?;
     let tree = scene.check_for(&arguments.query)?;
     if stage == TREE {
         return print(text::print(&scene.model).trim_end());

@@ -47,6 +47,11 @@ pub const MAX_PARTICLES: usize = 1 << 27;
 /// pieces of curves by the numbers that each has, and operations of formulas, wherever they reach. A unit
 /// takes about two nanoseconds, so a mesh of a million points of which nothing can be left out takes minutes.
 pub const MAX_POINT_WORK: usize = 1 << 17;
+/// Pairs of boxes that are looked at for the distance of two solids: 24 bytes and some tenths of a
+/// microsecond each. With more, the bounds are those of the pairs so far.
+pub const MAX_GAP_PAIRS: u32 = 1 << 22;
+/// What may be cut for the distance of two solids: rows that run in boxes. Some nanoseconds each.
+pub const MAX_GAP_WORK: u64 = 1 << 28;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.

@@ -363,6 +363,14 @@ macro_rules! for_each_op {
 
             /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
             StopGradient stop_gradient(a: real) -> real, renames;
+            /// The slope of `a` along the first input of the function, finite or not. The `gradient` and
+            /// `legalize` passes write it out; by itself, in a function that nobody has differentiated, it is
+            /// +0, as that of a constant. It has no slope.
+            SlopeX slope_x(a: real) -> real, expanded;
+            /// As `slope_x`, along the second input.
+            SlopeY slope_y(a: real) -> real, expanded;
+            /// As `slope_x`, along the third input.
+            SlopeZ slope_z(a: real) -> real, expanded;
 
             // ── ranges ───────────────────────────────────────────────────────────────────────────────
 

@@ -128,15 +128,17 @@ impl PyModel {
         Ok(self.with_tree(self.tree().constant(name, value)))
     }
 
-    /// The attribute or constant at the root counts whatever stands below.
+    /// The attribute, constant or style at the root counts whatever stands below.
     fn overriding(&self) -> PyResult<Self> {
-        let node = self.tree().node();
-        match node.written() {
-            written @ (Written::Attribute { .. } | Written::Constant { .. }) => {
-                Ok(self.with_tree(Tree::new(written.clone().overriding(), node.children().to_vec())))
-            }
-            _ => Err(refused("an attribute or a constant can override, and nothing else".to_owned())),
-        }
+        let what = || refused("an attribute, a constant or a style can override, and nothing else");
+        Ok(self.with_tree(self.tree().try_overriding().ok_or_else(what)?))
+    }
+
+    /// The attributes and constants down to another model are a style.
+    fn styled(&self, name: &str, below: &Bound<'_, Self>) -> PyResult<Self> {
+        let what = || refused("style: expected the model with attributes and constants around it");
+        let tree = self.tree().clone().with_style(name, below.get().tree());
+        Ok(self.with_tree(tree.ok_or_else(what)?))
     }
 
     /// Attributes by a pattern of two values.
@@ -247,7 +249,12 @@ impl PyModel {
         if self.inner().attributes.iter().any(|group| &*group.name == name) {
             return self.clone();
         }
-        let group = AttributeGroup { name: name.into(), default: vec![0.0; width], mixing: Mixing::Blend };
+        let group = AttributeGroup {
+            name: name.into(),
+            default: vec![0.0; width],
+            mixing: Mixing::Blend,
+            ..AttributeGroup::color()
+        };
         let mut model = self.inner().clone();
         model.attributes.push(group);
         self.edited(model)

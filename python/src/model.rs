@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use jbt::{AttributeGroup, CheckedTree, Compiled, Engine, Mixing, Query, Scene, SceneFolder, Tree};
+use jbt::{
+    AttributeGroup, CheckedTree, Compiled, Engine, GroupKind, Mixing, Query, Scene, SceneFolder, Tree,
+};
 use jbt_model::model::Model;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
 use jbt_text::Options;
@@ -176,19 +178,25 @@ impl PyModel {
         Ok(self.edited(Model { orientation: orientation_of(up, handed)?, ..self.0.model.clone() }))
     }
 
-    /// Attribute groups: name, default, mixing.
-    fn groups(&self) -> Vec<(String, Vec<f64>, &'static str)> {
-        let each =
-            |group: &AttributeGroup| (group.name.to_string(), group.default.clone(), group.mixing.name());
+    /// Attribute groups: name, default, mixing, and whether they are directions.
+    fn groups(&self) -> Vec<(String, Vec<f64>, &'static str, bool)> {
+        let each = |group: &AttributeGroup| {
+            (group.name.to_string(), group.default.clone(), group.mixing.name(), group.turns())
+        };
         self.0.model.attributes.iter().map(each).collect()
     }
 
     /// The same with a group declared so.
-    fn group(&self, name: &str, default: Vec<f64>, mixing: &str) -> PyResult<Self> {
+    fn group(&self, name: &str, default: Vec<f64>, mixing: &str, turns: bool) -> PyResult<Self> {
         let found = Mixing::ALL.into_iter().find(|known| known.name() == mixing);
         let words: Vec<&str> = Mixing::ALL.iter().map(|known| known.name()).collect();
         let wrong = || refused(format!("mixing: expected one of {}, got {mixing:?}", words.join(", ")));
-        let group = AttributeGroup { name: name.into(), default, mixing: found.ok_or_else(wrong)? };
+        let group = AttributeGroup {
+            name: name.into(),
+            default,
+            mixing: found.ok_or_else(wrong)?,
+            kind: if turns { GroupKind::Direction } else { GroupKind::Numbers },
+        };
         let mut model = self.0.model.clone();
         match model.attributes.iter_mut().find(|known| known.name == group.name) {
             Some(known) => *known = group,

@@ -205,6 +205,18 @@ def test_what_overrides_counts_whatever_stands_below() -> None:
         jbt.point(radius=1).overriding()
 
 
+def test_styles_keep_their_names() -> None:
+    def oak(model: jbt.Model) -> jbt.Model:
+        return model.constant("material", "oak").attribute("rough", 0.75)
+
+    table = jbt.point(radius=1).styled("oak", oak) + jbt.point((2, 0, 0), radius=1).styled("oak", oak)
+    assert str(table).count('style oak = { rough 0.75 constant material "oak" }') == 1
+    assert str(table).count("style oak {") == 2
+    assert str(jbt.point(radius=1).styled("oak", oak).overriding()).count("override style oak {") == 1
+    with pytest.raises(ValueError, match="style: expected"):
+        jbt.point(radius=1).styled("oak", lambda model: model.translate((1, 0, 0)))
+
+
 def test_constants_are_answered_by_owners_and_written(tmp_path: Path) -> None:
     pin = jbt.point((3, 0, 0), radius=1).constant("material", "brass").constant("part", 17)
     model = (jbt.point(radius=1) | pin).constant("material", "steel")

@@ -167,7 +167,7 @@ mod readme {}
 
 pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
-pub use jbt_model::attribute::{AttributeGroup, Mixing};
+pub use jbt_model::attribute::{AttributeGroup, GroupKind, Mixing};
 pub use jbt_model::builder as build;
 pub use jbt_model::check::{CheckedModel, CheckedTree, NodeId};
 pub use jbt_model::combine::{Combinator, SetOperation};

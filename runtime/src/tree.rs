@@ -47,12 +47,13 @@ pub use jbt_model::field::{Field, FieldKind, FieldValue};
 pub use jbt_model::kind::{NodeKind, Primitive};
 pub use jbt_model::map::MapKind;
 pub use jbt_model::member::{Lengths, Matrix, Member, Positions};
+pub use jbt_model::owner::LeafWays;
 pub use jbt_model::particles::{NumberArray, ParticleValues, Particles, PerParticle};
 pub use jbt_model::skeleton::{Skeleton, SkeletonKind};
 pub use jbt_model::texture::{Texture, TextureKind};
 pub use jbt_model::tour::{Tour, TourEvent, TourStep};
 pub use jbt_model::traverse::Visit;
-pub use jbt_model::tree::{Node, Tree};
+pub use jbt_model::tree::{Node, StyleUse, Tree};
 pub use jbt_model::warp::{Warp, WarpKind};
 pub use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,

@@ -247,3 +247,43 @@ fn files_have_an_object_for_each_part() {
         assert_eq!(largest as usize, piece.vertices.len() - 1);
     }
 }
+
+/// A plate of balls, `count` along each side and 1 apart, whose middles are moved by `shift` at `height`.
+fn plate(count: usize, shift: f64, height: f64, radius: f64) -> String {
+    let ball = |i: usize| {
+        let (x, y) = (i % count, i / count);
+        format!("point {{ at ({} {} {height}) surface_radius {radius} }}", x as f64 + shift, y as f64 + shift)
+    };
+    (0..count * count).map(ball).collect::<Vec<_>>().join(" ")
+}
+
+/// Every ball of one plate is as near to one of the other as the next: a million pairs of leaves and more, of
+/// which none can be left out before the end.
+#[test]
+fn distances_of_a_million_pairs_are_between_their_bounds() {
+    const COUNT: usize = 36;
+    for (shift, height, radius) in [(0.0, 1.5, 0.25), (0.5, 1.0, 0.25), (0.25, 4.0, 0.4)] {
+        let text = format!(
+            "part \"a\" {{ union {{ {} }} }} part \"b\" {{ union {{ {} }} }}",
+            plate(COUNT, 0.0, 0.0, radius),
+            plate(COUNT, shift, height, radius)
+        );
+        assert!(COUNT.pow(4) > 1_000_000);
+        let expected = 2.0f64.mul_add(shift * shift, height * height).sqrt() - 2.0 * radius;
+        let tolerance = 0.15;
+        let gap = parts(&text).distance(0, 1, tolerance).unwrap().unwrap();
+        assert!(gap.low <= expected + 1e-6 && expected <= gap.high + 1e-6, "{expected}: {gap:?}");
+        assert!(gap.high - gap.low <= tolerance, "{expected}: {gap:?}");
+    }
+}
+
+/// Where the work does not do, the bounds are wider, and hold.
+#[test]
+fn distances_without_end_have_bounds() {
+    let wall = |x: f64| format!("box {{ center ({x} 0 0) half (1 30 30) surface_radius 0.1 }}");
+    let text = format!("part \"a\" {{ {} }} part \"b\" {{ {} }}", wall(0.0), wall(4.0));
+    let gap = parts(&text).distance(0, 1, 1e-4).unwrap().unwrap();
+    let expected = 4.0 - 2.0 - 0.2;
+    assert!(gap.low <= expected + 1e-6 && expected <= gap.high + 1e-6, "{gap:?}");
+    assert!(gap.low > 0.5 * expected && gap.high < 1.5 * expected, "{gap:?}");
+}

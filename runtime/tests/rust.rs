@@ -24,18 +24,23 @@ param on = 1
 attribute rough 1 default 0.5 dominant
 attribute uv 2
 attribute five 5
+attribute grain direction default (0 0 1) dominant
+style wax = { rough 0.25 constant material "wax" }
 let fn = point { at (0 0 box) surface_radius box falloff blinn { hardness 1 + box edge exact } strength -(-Größe) }
 part "hub" {
     fn: union { use fn translate (1 0 0) { use fn } }
-    constant material "steel \ 5" { rough box / 2 { constant part -17 { polyline { points ((0 0 0) (1 0 box)) radii (0.1 0.2) closed yes radius 1 } } } }
+    constant material "steel \ 5" { rough box / 2 { override constant part -17 { polyline { points ((0 0 0) (1 0 box)) radii (0.1 0.2) closed yes radius 1 } } } }
+    style wax { point { at (2 0 0) radius 1 } }
+    override style wax { point { at (4 0 0) radius 1 } }
     rfunction intersection order 2 { select on { empty use fn } point { radius 1 } }
     blend ricci 2 + box { use fn blend ricci -3 { use fn } }
     smooth_difference width box { use fn particles { at ((0 0 0) (1 0 0)) radius (1 2) strength 0.5 falloff wyvill color ((1 0 0) (0 1 0)) with rough 0.5 } }
 }
 part "rim" {
     shell thickness 0.1 { clamp low 0 high box { offset by -0.1 { complement { affine (1 0 0 box 0 1 0 0 0 0 1 0) { point { radius 1 } } } } } }
-    uv scale (2 box) rotate 90 { five (1 2 3 4 5) { color noise { a (1 0 0) b (0 box 1) size 0.5 seed 7 octaves 2 } { point { radius 1 } } } }
+    override uv scale (2 box) rotate 90 { five (1 2 3 4 5) { color noise { a (1 0 0) b (0 box 1) size 0.5 seed 7 octaves 2 } { point { radius 1 } } } }
     color expression { r = length(x, y), (r, 1 - r, mod(z, box)) } { twist axis y rate box weighted { ring { ring_radius 1 radius 1 } use fn } }
+    grain (1 0 box) { use fn }
     warp (x - 0.5 * sin(y * 2), y ^ 2, tan(z)) { point { radius 1 } }
     expression within (-1 -1 -1) to (1 1 box) { d = -field(fn) ^ 0.5, max(d * d, blinn { hardness 2 edge smooth }(atan2(x, box))) - pow(ceil(box), -2) }
 }

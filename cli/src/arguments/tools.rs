@@ -178,7 +178,7 @@ All files are checked. The exit code is that of the first one with which somethi
 
 Keys of --json:
   files: [{file, ok, model: {nodes, leaves, instances, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
-  (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing}],
+  (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing, direction}],
   overlaps: {parts: [{name, volume: {low, high, estimate}}], pairs: [{parts: [NAME, NAME], relation (apart, touching,
   overlapping), at: [x, y, z], volume, within, more_than}]} (with --overlaps)}}] (model is null where something is wrong),
   diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end

@@ -6,6 +6,11 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use jbt::tree::{DEFINED, OWNER};
 use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
+use crate::failure::Failure;
+
+/// The way down to the leaf that decides, in words: a column of text.
+const OWNER_PATH: &str = "owner.path";
+
 /// Answers, and the groups of attributes among them if not all are wanted.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct WantedAnswers {
@@ -13,12 +18,14 @@ pub struct WantedAnswers {
     pub query: Query,
     /// The groups; nothing for all of them.
     groups: Option<Vec<String>>,
+    /// Whether the way down to the owner is wanted too.
+    owner_path: bool,
 }
 
 impl WantedAnswers {
     /// Words with commas between: those of queries, and names of groups.
     fn parse(text: &str) -> Self {
-        let mut wanted = Self { query: Query::FIELD, groups: None };
+        let mut wanted = Self::from(Query::FIELD);
         let (mut all, mut groups) = (false, Vec::new());
         for word in text.split(',').map(str::trim) {
             match word.parse::<Query>() {
@@ -26,8 +33,12 @@ impl WantedAnswers {
                     wanted.query = query.answers().fold(wanted.query, Query::and);
                     all |= query.contains(AnswerKind::Attributes);
                 }
+                Err(_) if word == OWNER_PATH => wanted.owner_path = true,
                 Err(_) => groups.push(word.to_owned()),
             }
+        }
+        if wanted.owner_path && !groups.iter().any(|name| name == OWNER) {
+            groups.push(OWNER.to_owned());
         }
         if !groups.is_empty() && !all {
             wanted.query = wanted.query.and(AnswerKind::Attributes);
@@ -41,10 +52,13 @@ impl WantedAnswers {
     /// # Errors
     /// A word that is neither that of an answer nor the name of a group.
     pub fn of(&self, tree: CheckedTree) -> Result<CheckedTree, Diagnostics> {
-        let Some(groups) = &self.groups else { return Ok(tree) };
+        let Some(groups) = &self.groups else {
+            return if self.owner_path { tree.with_owners() } else { Ok(tree) };
+        };
         let has_own = tree.attributes().iter().any(|group| &*group.name == OWNER);
         let asks_owner = groups.iter().any(|name| name == OWNER);
-        let mut tree = if asks_owner && !has_own { tree.with_owners()? } else { tree };
+        // A group of the model's own numbers no leaves: of it there is no path.
+        let mut tree = if self.owner_path || asks_owner && !has_own { tree.with_owners()? } else { tree };
         let mut asked: Vec<&str> = groups.iter().filter_map(|name| name.strip_suffix(DEFINED)).collect();
         asked.sort_unstable();
         asked.dedup();
@@ -53,11 +67,27 @@ impl WantedAnswers {
         }
         tree.of_attributes(groups)
     }
+
+    /// Refuses what is text.
+    ///
+    /// # Errors
+    /// The path of the owner is among what is wanted.
+    pub fn check_numbers(&self) -> Result<(), Failure> {
+        if self.owner_path {
+            return Err(Failure::Usage(format!("`{OWNER_PATH}` is text, which only `jbt eval` answers")));
+        }
+        Ok(())
+    }
+
+    /// The column of text that follows the numbers, if there is one.
+    pub fn text_column(&self) -> Option<&'static str> {
+        self.owner_path.then_some(OWNER_PATH)
+    }
 }
 
 impl From<Query> for WantedAnswers {
     fn from(query: Query) -> Self {
-        Self { query, groups: None }
+        Self { query, groups: None, owner_path: false }
     }
 }
 
@@ -97,7 +127,7 @@ mod tests {
     #[test]
     fn words_and_names() {
         let wanted = |text: &str| {
-            let WantedAnswers { query, groups } = WantedAnswers::parse(text);
+            let WantedAnswers { query, groups, .. } = WantedAnswers::parse(text);
             (query, groups.map(|groups| groups.join(" ")))
         };
         assert_eq!(wanted("field"), (Query::FIELD, None));
@@ -106,5 +136,7 @@ mod tests {
         assert_eq!(wanted("field,color"), (Query::ATTRIBUTES, Some("color".to_owned())));
         assert_eq!(wanted("rough, gradient,wet"), (Query::ALL, Some("rough wet".to_owned())));
         assert_eq!(wanted("attributes,color"), (Query::ATTRIBUTES, None));
+        assert_eq!(wanted("field,owner.path"), (Query::ATTRIBUTES, Some("owner".to_owned())));
+        assert!(WantedAnswers::parse("all,owner.path").owner_path);
     }
 }

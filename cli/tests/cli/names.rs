@@ -80,3 +80,135 @@ fn files_have_names_of_parts() {
     plain.jbt(&["mesh", "robot.jbt", "-o", "a.obj", "--cell", "0.2"]).code(0);
     assert!(!String::from_utf8(plain.read("a.obj")).unwrap().contains("\no "));
 }
+
+#[test]
+fn the_way_to_the_owner_is_a_column() {
+    let scene = "jbt 1 attribute rough 1
+let pin = point { radius 1 }
+part \"left\" { translate (-4 0 0) { use pin } }
+part \"rest\" {
+    rim: union { translate (4 0 0) { use pin } rough 1 { point { at (8 0 0) radius 1 } } }
+    deform by (0 0 1) weighted { point { at (0 8 0) radius 1 } use pin }
+}";
+    let folder =
+        Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n-4,0,0\n4,0,0\n8,0,0\n20,0,0\n0,8,0\n");
+    let table = |query: &str, more: &[&str]| {
+        let all = [&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", query], more].concat();
+        folder.jbt(&all).code(0).stdout()
+    };
+    // The pin has several places, of which the first one is told.
+    let first = "union.0/left.0/affine.0/pin";
+    let expected = format!(
+        "x,y,z,field,owner,owner.path
+-4,0,0,1,0,{first}
+4,0,0,1,0,{first}
+8,0,0,1,5,union.1/rest.0/rim.1/rough.0/point
+20,0,0,0,-1,
+0,8,0,1,9,union.1/rest.1/deform.0/point
+"
+    );
+    let found = table("owner.path", &[]);
+    assert_eq!(found.lines().next(), expected.lines().next());
+    for (found, expected) in found.lines().zip(expected.lines()).skip(1) {
+        // Which numbers nodes have is not of interest here.
+        let without = |line: &str| {
+            let fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            [&fields[..4], &fields[5..]].concat()
+        };
+        assert_eq!(without(found), without(expected));
+    }
+    assert_eq!(table("owner.path", &["--engine", "scalar", "--threads", "1"]), found);
+    let all = table("all,owner.path", &[]);
+    assert!(
+        all.starts_with("x,y,z,field,gx,gy,gz,color.r,color.g,color.b,rough,owner,owner.path\n"),
+        "{all}"
+    );
+    assert!(table("field,rough,owner", &[]).starts_with("x,y,z,field,rough,owner\n"));
+    for command in [&["sample", "a.jbt", "-o", "a.npy"][..], &["show", "a.jbt", "--stage", "ir"]] {
+        folder
+            .jbt(&[command, &["--query", "owner.path"]].concat())
+            .code(2)
+            .says("is text, which only `jbt eval`");
+    }
+    let own =
+        Folder::new().with("a.jbt", "jbt 1 attribute owner 1 point { radius 1 }").with("p.csv", "x,y,z\n");
+    let ran = own.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", "owner.path"]);
+    ran.code(2).says("has an attribute `owner` of its own");
+}
+
+/// A chain of many nodes has a way that is longer than anybody reads.
+#[test]
+fn long_ways_keep_their_ends() {
+    let deep = 2000;
+    let scene =
+        format!("jbt 1 {} leaf: point {{ radius 1 }} {}", "color (1 0 0) { ".repeat(deep), "}".repeat(deep));
+    let folder = Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n0,0,0\n");
+    let ran = folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", "owner.path"]).code(0);
+    let line = ran.stdout().lines().nth(1).unwrap().to_owned();
+    assert!(line.contains(",…/color.0/") && line.ends_with("/color.0/leaf") && line.len() < 1100, "{line}");
+}
+
+const SET: &str = "jbt 1
+part \"hub\" { sphere { sphere_radius 1 surface_radius 0.1 } }
+part \"left_arm\" { constant material \"oak\" { box { center (4 0 0) half (1 1 1) surface_radius 0.1 } } }
+part \"LEFT_ARM\" { point { at (8 0 0) surface_radius 1 } }
+";
+
+#[test]
+fn parts_go_to_files_of_their_own() {
+    let folder = Folder::new().with("set.jbt", SET);
+    let json = folder
+        .jbt(&["mesh", "set.jbt", "--parts", "-o", "set_{}.obj", "--cell", "0.25", "--json"])
+        .code(0)
+        .json();
+    let names = ["hub", "left_arm", "LEFT_ARM"];
+    let whole = folder.jbt(&["mesh", "set.jbt", "-o", "all.obj", "--cell", "0.25", "--json"]).code(0).json();
+    assert!(whole["parts"].is_null());
+    let mut triangles = 0;
+    for (place, file) in ["set_hub.obj", "set_left_arm.obj", "set_LEFT_ARM-2.obj"].into_iter().enumerate() {
+        let part = &json["parts"][place];
+        assert_eq!((part["name"].as_str(), part["file"].as_str()), (Some(names[place]), Some(file)));
+        let text = String::from_utf8(folder.read(file)).unwrap();
+        assert_eq!(text.matches("\no ").count(), 1, "{file}");
+        assert_eq!(text.contains("oak"), place == 1, "{file}");
+        let count = text.lines().filter(|line| line.starts_with("f ")).count();
+        assert_eq!(part["triangles"].as_u64(), Some(count as u64), "{file}");
+        triangles += count as u64;
+    }
+    assert_eq!(Some(triangles), whole["triangles"].as_u64());
+    let ran = folder.jbt(&["mesh", "set.jbt", "--parts", "-o", "set_{}.stl", "--cell", "0.25"]).code(0);
+    assert!(ran.stdout().contains("set_left_arm.stl"), "{}", ran.stdout());
+    // What stands on a table stays in parts.
+    let flat = [
+        "mesh",
+        "set.jbt",
+        "--parts",
+        "-o",
+        "flat_{}.stl",
+        "--cell",
+        "0.25",
+        "--flat-bottom",
+        "0.3",
+        "--json",
+    ];
+    assert_eq!(folder.jbt(&flat).code(0).json()["parts"][2]["name"], "LEFT_ARM");
+}
+
+#[test]
+fn parts_without_a_place_are_refused() {
+    let folder = Folder::new().with("set.jbt", SET).with("one.jbt", "jbt 1 point { surface_radius 1 }");
+    for (arguments, words) in [
+        (&["set.jbt", "--parts"][..], "--parts needs {} in the name of -o"),
+        (&["set.jbt", "--parts", "-o", "a.stl"], "--parts needs {} in the name of -o"),
+        (&["set.jbt", "--parts", "-o", "{}/a.stl"], "--parts needs {} in the name of -o"),
+        (&["one.jbt", "--parts", "-o", "a_{}.stl"], "--parts needs a scene of parts"),
+        (&["set_{}.jbt", "--parts", "-o", "a_{}.stl"], "a sequence has its number there"),
+        (&["set.jbt", "--parts", "-o", "a_{}.xyz"], "does not end with"),
+    ] {
+        folder.jbt(&[&["mesh"], arguments].concat()).code(2).says(words);
+    }
+    // One that cannot be written leaves the others as they were.
+    std::fs::create_dir(folder.path("set_LEFT_ARM-2.stl")).unwrap();
+    folder.jbt(&["mesh", "set.jbt", "--parts", "-o", "set_{}.stl", "--cell", "0.25"]).code(4);
+    assert!(!folder.path("set_hub.stl").exists());
+}

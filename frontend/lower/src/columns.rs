@@ -6,7 +6,7 @@
 
 use std::iter::repeat_n;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::computed::{Computed, attribute as given};
 use super::instance::Scene;
@@ -78,16 +78,39 @@ pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Na
             && let Some((particles, place)) = leaf.one_of(scene)
             && let Some(values) = particles.values_of(&group.name)
         {
-            row.extend(values.of(place));
+            let position = scene.field(leaf.field(scene)).position;
+            let values: Vec<f64> = values.of(place).collect();
+            push_turned(group, &scene.position(position).map.matrix3, &values, row);
             return;
         }
-        row.extend(match bindings[index].map(|bound| given(scene.tree, bound.node)) {
+        let at = bindings[index].and_then(|bound| bound.at);
+        let given: &[f64] = match bindings[index].map(|bound| given(scene.tree, bound.node)) {
             None => &group.default,
             Some(AttributeValue::Numbers(numbers)) => numbers,
             Some(AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_)) => {
                 unreachable!("it is computed")
             }
-        });
+        };
+        match at {
+            Some(at) => push_turned(group, &scene.position(at).map.matrix3, given, row),
+            None => row.extend(given),
+        }
+    })
+}
+
+/// The values of a group as a space has them, by the linear part of the map to it.
+fn push_turned(group: &AttributeGroup, map: &DMat3, values: &[f64], row: &mut Vec<f64>) {
+    match *values {
+        [x, y, z] if group.turns() => row.extend((*map * DVec3::new(x, y, z)).to_array()),
+        _ => row.extend(values),
+    }
+}
+
+/// The linear part of the map of what is computed of a group of directions, row by row.
+pub(super) fn turn_of_computed(group: usize) -> Columns<impl Names> {
+    let names = ["txx", "txy", "txz", "tyx", "tyy", "tyz", "tzx", "tzy", "tzz"];
+    columns(names, move |scene, member, row| {
+        row.extend(computed(scene, member, group).map.matrix3.transpose().to_cols_array());
     })
 }
 
@@ -173,7 +196,12 @@ pub(super) fn texture(kind: TextureKind, group: usize) -> Columns<impl Names> {
 
 /// The channels of one side of a texture.
 pub(super) fn side(group: &AttributeGroup, index: usize, of: fn(&Textured) -> &[f64]) -> Columns<impl Names> {
-    channels(group, move |scene, member| of(computed(scene, member, index).textured(scene.tree)))
+    let names = (0..group.width()).map(|channel| group.channel(channel));
+    columns(names, move |scene, member, row| {
+        let computed = computed(scene, member, index);
+        let values = of(computed.textured(scene.tree));
+        push_turned(&scene.tree.attributes()[index], &computed.map.matrix3, values, row);
+    })
 }
 
 /// The uv of a skeleton.

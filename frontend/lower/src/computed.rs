@@ -8,6 +8,7 @@
 //! leaf bound to a texture     its row: map, numbers of the texture, both values     code: t at the mapped point, (1 - t) a + t b
 //! leaf bound to uv            its row: map to the skeleton's frame, uv columns, a 2x3 matrix
 //! leaf bound to a formula     its row: map, numbers of the formula                  code: min(max(F, -largest), largest), and 0 for a NaN
+//! direction inside a warp     its row: the direction in the space of the warp       code: J^-1 of it, J being the slopes of the point there
 //! ```
 //!
 //! A texture or formula that several leaves see in the same coordinates is evaluated once: it is hoisted to
@@ -43,6 +44,8 @@ pub(super) enum ComputedKind {
     Texture(TextureKind),
     Uv(SkeletonKind),
     Formula(Arc<Form>),
+    /// Directions inside of a warp that are the same everywhere in their space.
+    Numbers,
 }
 
 /// A function in coordinates.
@@ -79,14 +82,14 @@ impl ComputedKind {
     pub(super) const fn is_finite(&self) -> bool {
         match self {
             // Formulas are kept within bounds.
-            Self::Texture(_) | Self::Uv(_) | Self::Formula(_) => true,
+            Self::Texture(_) | Self::Uv(_) | Self::Formula(_) | Self::Numbers => true,
         }
     }
 
     /// How many operations of a formula it takes.
     pub(super) fn steps(&self) -> usize {
         match self {
-            Self::Texture(_) | Self::Uv(_) => 0,
+            Self::Texture(_) | Self::Uv(_) | Self::Numbers => 0,
             Self::Formula(form) => form.steps(),
         }
     }

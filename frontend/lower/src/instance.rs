@@ -35,7 +35,7 @@ pub(super) struct Bound {
     /// The attribute node.
     pub(super) node: NodeId,
     /// Where it stands, if what it gives depends on that.
-    at: Option<PositionId>,
+    pub(super) at: Option<PositionId>,
 }
 
 /// The inside of a warp.

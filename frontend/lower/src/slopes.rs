@@ -178,6 +178,9 @@ fn back(d: &mut FunctionBuilder, entry: &Entry, slope: Value, slopes: &mut HashM
         | Op::Shl
         | Op::Shr
         | Op::StopGradient
+        | Op::SlopeX
+        | Op::SlopeY
+        | Op::SlopeZ
         | Op::LowEnd => {}
     }
 }

@@ -9,6 +9,8 @@ use crate::affine::sin_cos_degrees;
 use crate::expression::Expression;
 use crate::texture::Texture;
 
+pub use crate::precedence::Precedence;
+
 /// How the leaves' values become the value at a point.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Mixing {
@@ -32,15 +34,25 @@ impl Mixing {
     }
 }
 
-/// Which of several values of one name above a leaf counts.
+/// What the values of a group are.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum Precedence {
-    /// The one that is nearest to the leaf, unless one above overrides it.
+pub enum GroupKind {
+    /// Numbers, which are the same wherever a leaf is moved.
     #[default]
-    Nearest,
-    /// This one, whatever stands below; of several that override, the one that is nearest to the root.
-    Override,
+    Numbers,
+    /// Directions, of 3 reals: that of a line element, as the grain of wood or a fibre. Affine maps above the
+    /// node that gives one turn it by their linear part, warps by the derivative of what they do there.
+    /// It is not normalised again: where a line is stretched, its direction is longer.
+    Direction,
 }
+
+impl GroupKind {
+    /// Both kinds.
+    pub const ALL: [Self; 2] = [Self::Numbers, Self::Direction];
+}
+
+/// The word for a group of directions, in place of its width.
+pub const DIRECTION: &str = "direction";
 
 /// A group of 1 to [`MAX_ATTRIBUTE_WIDTH`](jbt_ir::limits::MAX_ATTRIBUTE_WIDTH) reals with a name.
 #[derive(Clone, PartialEq, Debug)]
@@ -52,13 +64,37 @@ pub struct AttributeGroup {
     pub default: Vec<f64>,
     /// How values mix.
     pub mixing: Mixing,
+    /// What they are.
+    pub kind: GroupKind,
 }
 
 impl AttributeGroup {
     /// The group that every model has: `color`, linear red, green and blue, mixed, white by default.
     #[must_use]
     pub fn color() -> Self {
-        Self { name: "color".into(), default: vec![1.0; 3], mixing: Mixing::Blend }
+        Self { name: "color".into(), default: vec![1.0; 3], mixing: Mixing::Blend, kind: GroupKind::Numbers }
+    }
+
+    /// A group of directions, mixed: see [`GroupKind::Direction`].
+    ///
+    /// ```
+    /// use jbt_model::{attribute::AttributeGroup, builder::point, model::Model, walk::walk};
+    /// let beam = point([0; 3], 1).attribute("grain", &[1, 0, 0]).rotate_z(90);
+    /// let groups = vec![AttributeGroup::color(), AttributeGroup::direction("grain", [0.0; 3])];
+    /// let tree = Model { attributes: groups, ..Model::new(beam) }.check()?;
+    /// assert_eq!(walk(&tree, [0.0; 3]).attributes[1], [0.0, 1.0, 0.0]);
+    /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
+    /// ```
+    #[must_use]
+    pub fn direction(name: &str, default: [f64; 3]) -> Self {
+        let default = default.to_vec();
+        Self { name: name.into(), default, mixing: Mixing::Blend, kind: GroupKind::Direction }
+    }
+
+    /// Whether its values turn with what moves their leaves.
+    #[must_use]
+    pub fn turns(&self) -> bool {
+        self.kind == GroupKind::Direction
     }
 
     /// Number of reals.
@@ -178,6 +214,7 @@ mod tests {
             name: "n".into(),
             default: vec![0.0; width],
             mixing: Mixing::Blend,
+            kind: GroupKind::Numbers,
         };
         assert_eq!(
             [group(1).channel(0), group(4).channel(3), group(5).channel(4)],

@@ -45,6 +45,9 @@ pub(crate) trait Question {
     /// The way below an attribute node, which is asked at `p`.
     fn given(&self, way: Self::Way, node: GivenAttribute<'_>, p: DVec3) -> Self::Way;
 
+    /// The way into a map or a warp, which is asked at `p`.
+    fn turned(&self, tree: &CheckedTree, way: Self::Way, node: NodeId, p: DVec3) -> Self::Way;
+
     /// The answer of a leaf.
     fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Self::Way) -> Self::Answer;
 
@@ -87,7 +90,17 @@ enum DescentTask<Q: Question> {
 
 /// The answer of the root at `p`. Cost: all paths of the tree.
 pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way, p: DVec3) -> Q::Answer {
-    let mut tasks: Vec<DescentTask<Q>> = vec![DescentTask::Ask(tree.root(), p, way)];
+    ask_at(tree, question, tree.root(), (way, p))
+}
+
+/// The answer of a node at a point of the space around it.
+pub(crate) fn ask_at<Q: Question>(
+    tree: &CheckedTree,
+    question: &mut Q,
+    node: NodeId,
+    (way, p): (Q::Way, DVec3),
+) -> Q::Answer {
+    let mut tasks: Vec<DescentTask<Q>> = vec![DescentTask::Ask(node, p, way)];
     let mut answers: Vec<Q::Answer> = Vec::new();
     while let Some(task) = tasks.pop() {
         match task {
@@ -105,7 +118,10 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                         tasks.extend((0..node.children.len()).rev().map(|index| child(index, p, &way)));
                     }
                     NodeKind::Select(which) => tasks.push(child(chosen(*which), p, &way)),
-                    NodeKind::Affine(map) => tasks.push(child(0, map.inverse().transform_point3(p), &way)),
+                    NodeKind::Affine(map) => {
+                        let way = question.turned(tree, way, id, p);
+                        tasks.push(child(0, map.inverse().transform_point3(p), &way));
+                    }
                     NodeKind::Warp(_) if node.children.len() > 1 => {
                         let weight = child(1, p, &way);
                         tasks.push(DescentTask::Enter(id, p, way));
@@ -113,6 +129,7 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                     }
                     NodeKind::Warp(warp) => {
                         tasks.push(DescentTask::Mark(question.mark(warp, p, None)));
+                        let way = question.turned(tree, way, id, p);
                         tasks.push(child(0, warp.inverse(p), &way));
                     }
                     NodeKind::Attribute { name, value, precedence } => {
@@ -129,6 +146,7 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                 if let NodeKind::Warp(warp) = &node.kind {
                     tasks.push(DescentTask::Mark(question.mark(warp, p, Some(&weight))));
                     let at = warp.weighted(p, Q::field(&weight));
+                    let way = question.turned(tree, way, id, p);
                     tasks.push(DescentTask::Ask(node.children[0], at, question.below(&way, 0)));
                 }
             }
@@ -137,21 +155,30 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                 question.marked(answer, mark);
             }
             DescentTask::Answer(id, p, way) => {
-                let node = tree.node(id);
-                let children = answers.split_off(answers.len() - node.children.len());
-                answers.push(match &node.kind {
-                    NodeKind::Combine(combinator) => question.combine(*combinator, &children),
-                    NodeKind::Expression(formula) => question.express(formula, p, &way, &children),
-                    NodeKind::Primitive(_)
-                    | NodeKind::Particles(_)
-                    | NodeKind::Select(_)
-                    | NodeKind::Affine(_)
-                    | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. }
-                    | NodeKind::Constant { .. } => unreachable!("these answer at once"),
-                });
+                let children = answers.split_off(answers.len() - tree.node(id).children.len());
+                answers.push(joined(question, &tree.node(id).kind, (p, &way), &children));
             }
         }
     }
     answers.pop().expect("the root has answered")
+}
+
+/// The answer of a node whose children have answered.
+fn joined<Q: Question>(
+    question: &Q,
+    kind: &NodeKind,
+    (p, way): (DVec3, &Q::Way),
+    children: &[Q::Answer],
+) -> Q::Answer {
+    match kind {
+        NodeKind::Combine(combinator) => question.combine(*combinator, children),
+        NodeKind::Expression(formula) => question.express(formula, p, way, children),
+        NodeKind::Primitive(_)
+        | NodeKind::Particles(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. } => unreachable!("these answer at once"),
+    }
 }

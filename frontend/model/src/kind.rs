@@ -109,6 +109,11 @@ impl NodeKind {
         }
     }
 
+    /// The group of which it gives leaves an attribute.
+    fn group(&self) -> Option<&str> {
+        if let Self::Attribute { name, .. } = self { Some(name) } else { None }
+    }
+
     /// Whether it gives leaves something that no node below changes.
     #[must_use]
     pub fn overrides(&self) -> bool {
@@ -129,11 +134,10 @@ impl NodeKind {
     /// Whether it gives leaves the same thing as another node: the attribute of one group, or the constant of
     /// one name.
     pub(crate) fn binds_what(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Attribute { name, .. }, Self::Attribute { name: other, .. })
-            | (Self::Constant { name, .. }, Self::Constant { name: other, .. }) => name == other,
-            _ => false,
-        }
+        let constants = [self, other].map(|kind| kind.constant().map(|(name, _)| name));
+        let groups = [self, other].map(Self::group);
+        constants[0].is_some() && constants[0] == constants[1]
+            || groups[0].is_some() && groups[0] == groups[1]
     }
 
     /// The rows of an affine map, the last column of which is the shift; `None` for any other node.

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::{Note, Span};
+use crate::precedence::Precedence;
 
 /// What is known of a node besides its meaning. Most nodes have none.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -13,8 +14,21 @@ pub struct NodeLabel {
     pub name: Option<Arc<str>>,
     /// Whether it is a part: a solid of its own, if it stands right below the root.
     pub part: bool,
+    /// The style that it and nodes below it are.
+    pub style: Option<NodeStyle>,
     /// The calls and loops around it, if it is not written where the model has it.
     pub calls: Option<Arc<LabelCall>>,
+}
+
+/// A use of a style: see [`Tree::style`](crate::tree::Tree::style).
+#[derive(Clone, PartialEq, Debug)]
+pub struct NodeStyle {
+    /// What the style is called.
+    pub name: Arc<str>,
+    /// How many nodes it stands for: this one, and the next ones below.
+    pub count: usize,
+    /// Whether all of it overrides what stands below.
+    pub precedence: Precedence,
 }
 
 /// A place where a definition is used or a loop stands, and those around it.

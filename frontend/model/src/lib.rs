@@ -39,6 +39,7 @@ pub mod parameter;
 pub mod particles;
 pub mod path;
 mod power;
+pub mod precedence;
 pub mod query;
 pub mod report;
 pub mod scopes;

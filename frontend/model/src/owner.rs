@@ -113,6 +113,68 @@ impl Owner {
     }
 }
 
+/// The ways down to the leaves of a tree, in words: to a leaf with several uses, the first one in the order
+/// of the file. Selectors lead to their chosen children, and warps not to their weights.
+///
+/// ```
+/// use jbt_model::{check::NodeId, owner::LeafWays};
+/// let text = "jbt 1 let a = point { radius 1 }
+///     union { left: translate (1 0 0) { use a } translate (2 0 0) { use a } }";
+/// let tree = jbt_text::model(text)?.check()?;
+/// assert_eq!(LeafWays::new(&tree).path(NodeId(0), 100).as_deref(), Some("union.0/left.0/a"));
+/// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LeafWays<'a> {
+    tree: &'a CheckedTree,
+    /// Of each node that a way leads to: the node above it, and which of its children it is.
+    above: Vec<Option<(NodeId, u32)>>,
+}
+
+impl<'a> LeafWays<'a> {
+    /// Those of a tree. Cost: each node once.
+    #[must_use]
+    pub fn new(tree: &'a CheckedTree) -> Self {
+        let mut above = vec![None; tree.nodes().len()];
+        let mut seen = vec![false; tree.nodes().len()];
+        let mut stack = vec![(tree.root(), None)];
+        while let Some((id, way)) = stack.pop() {
+            if std::mem::replace(&mut seen[id.0 as usize], true) {
+                continue;
+            }
+            above[id.0 as usize] = way;
+            let node = tree.node(id);
+            let answering = match &node.kind {
+                NodeKind::Warp(_) => 0..1,
+                kind => kind.places_asked(node.children.len()),
+            };
+            stack.extend(answering.rev().map(|child| (node.children[child], Some((id, child as u32)))));
+        }
+        Self { tree, above }
+    }
+
+    /// The way from the root to a node, as [`Owner::path`] has it, but that it does not tell particles apart;
+    /// `None` if no way leads there. Of one that takes more than so many bytes, the end, behind `…/`.
+    #[must_use]
+    pub fn path(&self, leaf: NodeId, longest: usize) -> Option<String> {
+        let mut steps = vec![word(self.tree.nodes().get(leaf.0 as usize)?).to_owned()];
+        let (mut length, mut at) = (steps[0].len(), leaf);
+        while let Some((node, child)) = self.above[at.0 as usize] {
+            let step = format!("{}.{child}", word(self.tree.node(node)));
+            length += step.len() + 1;
+            if length > longest {
+                steps.push("…".to_owned());
+                break;
+            }
+            steps.push(step);
+            at = node;
+        }
+        let is_reached = steps.len() > 1 || leaf == self.tree.root();
+        steps.reverse();
+        is_reached.then(|| steps.join("/"))
+    }
+}
+
 /// The word for a node: its name, or that of its kind.
 fn word(node: &CheckedNode) -> &str {
     if let Some(name) = node.name() {
@@ -214,6 +276,10 @@ impl Question for Owners {
     }
 
     fn given(&self, way: OwnerWay, _node: GivenAttribute<'_>, _p: DVec3) -> OwnerWay {
+        way
+    }
+
+    fn turned(&self, _tree: &CheckedTree, way: OwnerWay, _node: NodeId, _p: DVec3) -> OwnerWay {
         way
     }
 

@@ -26,6 +26,9 @@ use crate::written::Written;
 pub(crate) mod order;
 mod part;
 mod share;
+mod style;
+
+pub use style::StyleUse;
 
 /// The iso-value of a model when nothing else is said.
 pub(crate) const DEFAULT_ISO: f64 = 0.5;

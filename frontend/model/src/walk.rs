@@ -16,12 +16,12 @@
 
 use std::rc::Rc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence, UvMap};
+use crate::attribute::{AttributeGroup, AttributeValue, GroupKind, Mixing, Precedence, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, OperatorForm, ReduceCode, Sum};
-use crate::descent::{GivenAttribute, Question, ask};
+use crate::descent::{GivenAttribute, Question, ask, ask_at};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
 use crate::particles::{ParticleValues, Particles};
@@ -63,8 +63,26 @@ struct Heard {
     precedence: Precedence,
 }
 
-/// What the way down has found of all groups.
-type Way = Rc<[Heard]>;
+/// What the way down has found of all groups, and how it turns directions: from here to the world. Where no
+/// group is one, nobody asks.
+#[derive(Clone)]
+struct Way {
+    heard: Rc<[Heard]>,
+    turn: DMat3,
+}
+
+impl Way {
+    /// A value as the world has it.
+    fn turned(&self, group: &AttributeGroup, value: Vec<f64>) -> Vec<f64> {
+        match (group.kind, &value[..]) {
+            (GroupKind::Direction, &[x, y, z]) => (self.turn * DVec3::new(x, y, z)).to_array().to_vec(),
+            (GroupKind::Direction | GroupKind::Numbers, _) => value,
+        }
+    }
+}
+
+/// The step of the differences that turn directions in warps.
+const TURN_STEP: f64 = 1e-5;
 
 impl Heard {
     fn numbers(value: Vec<f64>) -> Self {
@@ -93,15 +111,27 @@ struct SampleAnswer {
 #[must_use]
 pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
     let defaults: GroupValues = tree.attributes().iter().map(|group| group.default.clone()).collect();
-    let unbound: Way = defaults.iter().map(|value| Heard::numbers(value.clone())).collect();
-    let root = ask(tree, &mut SampleQuestion { tree, defaults }, unbound, p.into());
+    let heard = defaults.iter().map(|value| Heard::numbers(value.clone())).collect();
+    let unbound = Way { heard, turn: DMat3::IDENTITY };
+    let turns = tree.attributes().iter().any(AttributeGroup::turns);
+    let root = ask(tree, &mut SampleQuestion { tree, defaults, turns }, unbound, p.into());
     finish(tree, &root)
+}
+
+/// The field of a node at a point of the space around it.
+fn field_at(tree: &CheckedTree, node: NodeId, p: DVec3) -> f64 {
+    let defaults: GroupValues = tree.attributes().iter().map(|group| group.default.clone()).collect();
+    let heard = defaults.iter().map(|value| Heard::numbers(value.clone())).collect();
+    let mut question = SampleQuestion { tree, defaults, turns: false };
+    ask_at(tree, &mut question, node, (Way { heard, turn: DMat3::IDENTITY }, p)).field
 }
 
 /// The question for the field and the attributes.
 struct SampleQuestion<'a> {
     tree: &'a CheckedTree,
     defaults: GroupValues,
+    /// Whether there are directions.
+    turns: bool,
 }
 
 impl Question for SampleQuestion<'_> {
@@ -115,18 +145,45 @@ impl Question for SampleQuestion<'_> {
     }
 
     fn below(&self, way: &Way, _child: usize) -> Way {
-        Rc::clone(way)
+        way.clone()
     }
 
     fn given(&self, way: Way, node: GivenAttribute<'_>, p: DVec3) -> Way {
         // Nearer to the leaves than whatever was said above: it replaces it, unless that overrides.
-        let mut way = way.to_vec();
-        for (group, above) in self.tree.attributes().iter().zip(&mut way) {
+        let mut heard = way.heard.to_vec();
+        for (group, above) in self.tree.attributes().iter().zip(&mut heard) {
             if *group.name == *node.name && above.precedence == Precedence::Nearest {
-                *above = Heard { given: given(node.value, p), precedence: node.precedence };
+                let given = match given(node.value, p) {
+                    Given::Value(value, jump) => Given::Value(way.turned(group, value), jump),
+                    uv @ Given::Uv(_) => uv,
+                };
+                *above = Heard { given, precedence: node.precedence };
             }
         }
-        way.into()
+        Way { heard: heard.into(), ..way }
+    }
+
+    fn turned(&self, tree: &CheckedTree, way: Way, node: NodeId, p: DVec3) -> Way {
+        if !self.turns {
+            return way;
+        }
+        let node = tree.node(node);
+        let step = if let NodeKind::Affine(map) = &node.kind {
+            map.matrix3
+        } else if let NodeKind::Warp(warp) = &node.kind {
+            let inside = |p: DVec3| match node.children.get(1) {
+                Some(&weight) => warp.weighted(p, field_at(tree, weight, p)),
+                None => warp.inverse(p),
+            };
+            let along = |axis: DVec3| {
+                let offset = TURN_STEP * axis;
+                (inside(p + offset) - inside(p - offset)) / (2.0 * TURN_STEP)
+            };
+            DMat3::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).inverse()
+        } else {
+            return way;
+        };
+        Way { turn: way.turn * step, ..way }
     }
 
     fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Way) -> SampleAnswer {
@@ -200,7 +257,8 @@ fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (GroupValues, f64) {
         Given::Value(_, kink_distance) => *kink_distance,
         Given::Uv(_) => skeleton.uv_kink_distance(p),
     };
-    (way.iter().map(value).collect(), way.iter().map(jump).fold(f64::INFINITY, f64::min))
+    let heard = way.heard.iter();
+    (heard.clone().map(value).collect(), heard.map(jump).fold(f64::INFINITY, f64::min))
 }
 
 /// The sum of particles. Of those that are silent the first two are kept, which say what any number of them
@@ -228,11 +286,17 @@ fn sum(
                 continue;
             }
         }
-        let heard = |(values, above): (&Option<&ParticleValues>, &Heard)| match (values, above.precedence) {
-            (Some(values), Precedence::Nearest) => Heard::numbers(values.of(particle).collect()),
+        let heard = |((values, group), above): ((&Option<&ParticleValues>, &AttributeGroup), &Heard)| match (
+            values,
+            above.precedence,
+        ) {
+            (Some(values), Precedence::Nearest) => {
+                Heard::numbers(way.turned(group, values.of(particle).collect()))
+            }
             _ => above.clone(),
         };
-        let way: Way = own.iter().zip(way.iter()).map(heard).collect();
+        let heard = own.iter().zip(tree.attributes()).zip(way.heard.iter()).map(heard).collect();
+        let way = Way { heard, turn: way.turn };
         let leaf = Primitive { skeleton: skeleton.into(), falloff, radius, strength };
         answers.push(primitive(&leaf, p, &way));
     }

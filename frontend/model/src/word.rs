@@ -15,6 +15,9 @@ pub const CONSTANT: &str = "constant";
 /// The word before an attribute or a constant that counts whatever stands below.
 pub const OVERRIDE: &str = "override";
 
+/// The word for attributes and constants that have a name together.
+pub const STYLE: &str = "style";
+
 /// The words that begin a statement.
 const STATEMENTS: [&str; 7] = ["jbt", "iso", "origin", "orientation", "param", "attribute", "let"];
 

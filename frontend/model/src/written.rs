@@ -405,11 +405,20 @@ impl Written {
         self
     }
 
-    /// The same, which nothing below changes, if it is an attribute or a constant.
+    /// What it gives leaves: whether that is a constant, and its name. `None` if it gives nothing.
     #[must_use]
-    pub fn overriding(mut self) -> Self {
+    pub fn given(&self) -> Option<(bool, &str)> {
+        if let Self::Attribute { name, .. } = self {
+            return Some((false, name));
+        }
+        if let Self::Constant { name, .. } = self { Some((true, name)) } else { None }
+    }
+
+    /// The same with another precedence, if it is an attribute or a constant.
+    #[must_use]
+    pub fn with_precedence(mut self, new: Precedence) -> Self {
         if let Self::Attribute { precedence, .. } | Self::Constant { precedence, .. } = &mut self {
-            *precedence = Precedence::Override;
+            *precedence = new;
         }
         self
     }

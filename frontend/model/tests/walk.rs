@@ -114,7 +114,12 @@ fn weights_are_normalised_at_each_node() {
 
 #[test]
 fn dominance() {
-    let group = |name: &str, mixing| AttributeGroup { name: name.into(), default: vec![-1.0], mixing };
+    let group = |name: &str, mixing| AttributeGroup {
+        name: name.into(),
+        default: vec![-1.0],
+        mixing,
+        ..AttributeGroup::color()
+    };
     let model = |root: Tree| {
         let attributes =
             vec![AttributeGroup::color(), group("part", Mixing::Dominant), group("heat", Mixing::Blend)];
@@ -195,7 +200,12 @@ fn formulas_of_attributes_are_checked() {
 
 #[test]
 fn uv_is_that_of_the_leaf_where_it_stands() {
-    let uv = AttributeGroup { name: "uv".into(), default: vec![9.0; 2], mixing: Mixing::Blend };
+    let uv = AttributeGroup {
+        name: "uv".into(),
+        default: vec![9.0; 2],
+        mixing: Mixing::Blend,
+        ..AttributeGroup::color()
+    };
     let at = |tree: Tree, p| {
         let attributes = vec![AttributeGroup::color(), uv.clone()];
         walk(&Model { attributes, ..Model::new(tree) }.check().unwrap(), p).attributes[1].clone()

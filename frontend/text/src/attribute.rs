@@ -51,8 +51,12 @@ impl Parser<'_> {
             self.parameter(word).is_some() || self.elements_named(word).is_some() || is_builtin(word)
         };
         let begins_uv = match word {
-            Some(word) => UV_WORDS.contains(&word) && (width == 2 || !is_number(word)),
-            None => self.peek().is(b'{'),
+            // Behind a uv without a map, the next value of a style or its end may follow.
+            Some(word) => {
+                let is_uv = UV_WORDS.contains(&word) || self.begins_given(word) && !is_number(word);
+                is_uv && (width == 2 || !is_number(word))
+            }
+            None => self.peek().is(b'{') || self.peek().is(b'}'),
         };
         if begins_uv && (width == 2 || name == "uv") {
             return self.uv(at, name, width).map(WrittenAttribute::Uv);
@@ -93,6 +97,9 @@ impl Parser<'_> {
     fn uv(&mut self, at: Token, name: &str, width: usize) -> Option<WrittenUv> {
         let (mut scale, mut degrees, mut shift) = (None, None, None);
         while let Some(word) = self.peek_word() {
+            if self.begins_given(word) && !UV_WORDS.contains(&word) {
+                break;
+            }
             if !UV_WORDS.contains(&word) {
                 let expected = format!("expected `{{`, or a part of the map: {}", UV_WORDS.join(", "));
                 self.expected_at(self.peek(), &expected);

@@ -1,8 +1,10 @@
 //! Blocks of a text, and what their nodes become.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
-use super::program::known::{BodyFrame, CallFrame, LocalFrame};
+use super::program::known::{BodyFrame, CallFrame, LocalFrame, TextStyle};
+use jbt_model::attribute::Precedence;
 use jbt_model::combine::CombinatorKind;
 use jbt_model::diagnostic::Span;
 use jbt_model::tree::Tree;
@@ -16,6 +18,8 @@ pub(super) enum Head {
     Operator(Box<Written>),
     /// With one child. Boxed, so that a million open blocks are small.
     Unary(Box<Written>),
+    /// A style, and whether it overrides.
+    Styled(Rc<TextStyle>, Precedence),
     /// A warp whose second child weighs it.
     Weighted(Box<Written>),
     /// The head has an error; the block is read for its own errors.

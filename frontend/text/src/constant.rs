@@ -5,9 +5,8 @@
 //! constant part 17 { child }                                 a whole number, or an expression that is one
 //! ```
 
-use super::block::{Begun, Head};
 use super::expression::ExpressionPlace;
-use super::lex::{Token, TokenKind};
+use super::lex::TokenKind;
 use super::state::Parser;
 use jbt_model::attribute::Precedence;
 use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
@@ -16,17 +15,16 @@ use jbt_model::parameter::Fixture;
 use jbt_model::word::normalized;
 use jbt_model::written::Written;
 
-impl<'a> Parser<'a> {
-    /// A constant whose word, `start`, has just been taken.
-    pub(super) fn constant(&mut self, start: Token, precedence: Precedence) -> Begun<'a> {
+impl Parser<'_> {
+    /// A constant whose word has just been taken; nothing after an error.
+    pub(super) fn constant(&mut self, precedence: Precedence) -> Option<Written> {
         let Some(name) = self.peek_word() else {
             self.expected_at(self.peek(), "expected the name of a constant");
-            return self.block(start, Head::Broken);
+            return None;
         };
         self.next();
-        let value = self.constant_value();
-        let name = normalized(name).into();
-        self.unary(start, value.map(|value| Written::Constant { name, value, precedence }))
+        let value = self.constant_value()?;
+        Some(Written::Constant { name: normalized(name).into(), value, precedence })
     }
 
     /// Text in quotes, or a whole number; nothing after an error.

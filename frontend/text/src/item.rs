@@ -1,6 +1,7 @@
 //! Items of a printed model, one by one: its statements, and its nodes without their blocks.
 
-use super::print::{head, print, print_parameter};
+use super::print::head::head;
+use super::print::{print, print_parameter};
 use super::words::EMPTY;
 use jbt_model::model::{Comments, Model};
 use jbt_model::tree::Tree;

@@ -22,8 +22,9 @@
 //!            | "orientation" [ "up" ( "y" | "z" ) ] [ "handed" ( "right" | "left" ) ]      at least one of them; z and right if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
 //!              [ "in" expression ".." expression [ "step" expression ] ] [ QUOTED ]    its range and its label
-//!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
+//!            | "attribute" NAME ( width | "direction" ) [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" ( node | item )
+//!            | "style" NAME "=" "{" { head } "}"              attributes and constants that have a name together
 //!            | "def" NAME "(" [ NAME [ "=" item ] { "," NAME [ "=" item ] } ] ")" body
 //!            | "include" QUOTED                              what the file gives a name to
 //!            | "part" QUOTED "{" { node } "}"             a solid of its own
@@ -75,8 +76,10 @@
 //!            | WARP { FIELD value } [ "weighted" ]           weighted: two nodes in the block, the second gives the weight
 //!            | "warp" "(" { NAME "=" expression "," } expression "," expression "," expression ")" [ box ] [ "weighted" ]
 //!                                                            where the node is asked, for each point
-//!            | "constant" NAME ( QUOTED | expression )        what leaves are of: text, or a whole number
-//!            | [ "with" ] NAME given ;                       a declared attribute; "with" if its name is a word of the format
+//!            | [ "override" ] "style" NAME                  what the style has
+//!            | head ;
+//! head       = [ "override" ] "constant" NAME ( QUOTED | expression )        what leaves are of: text, or a whole number
+//!            | [ "override" ] [ "with" ] NAME given ;        a declared attribute; "with" if its name is a word of the format
 //! given      = values                                        the same everywhere
 //!            | TEXTURE "{" { "a" values | "b" values | FIELD value } "}"     a pattern in the node's space: a where it is 0, b where it is 1
 //!            | { "scale" ( expression | vector ) | "rotate" expression | "shift" vector } ;   uv of the skeletons, for groups of 2 reals

@@ -18,7 +18,7 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::tree::Tree;
 use jbt_model::warp::WarpKind;
-use jbt_model::word::{CONSTANT, OVERRIDE, is_statement};
+use jbt_model::word::{CONSTANT, OVERRIDE, STYLE, is_statement};
 use jbt_model::written::Written;
 
 impl<'a> Parser<'a> {
@@ -27,14 +27,14 @@ impl<'a> Parser<'a> {
         fixed_words().any(|fixed| fixed == word)
             || self.group(word).is_some()
             || self.program.defines(word)
-            || ["for", "if", "include", EMPTY, CONSTANT, OVERRIDE].contains(&word)
+            || ["for", "if", "include", EMPTY, CONSTANT, OVERRIDE, STYLE].contains(&word)
     }
 
     /// All words that begin a node of this file.
     fn node_words(&self) -> impl Iterator<Item = &str> {
         let fixed = fixed_words().map(|word| -> &str { word });
         let own = self.attributes.iter().map(|group| &*group.name);
-        fixed.chain([EMPTY, CONSTANT, OVERRIDE]).chain(own).chain(self.program.definition_names())
+        fixed.chain([EMPTY, CONSTANT, OVERRIDE, STYLE]).chain(own).chain(self.program.definition_names())
     }
 
     /// Past the next token, or past the whole block that it opens.
@@ -166,13 +166,16 @@ impl<'a> Parser<'a> {
                 self.combinator(start, CombinatorKind::Ricci)
             }
             _ if MapKind::named(word).next().is_some() => self.map(start, word),
-            GROUP_NODE => self.named_attribute(start, Precedence::Nearest),
-            _ if self.group(word).is_some() => self.attribute(start, (start, word), Precedence::Nearest),
+            GROUP_NODE => self.given_node(start, Self::named_attribute),
+            _ if self.group(word).is_some() => {
+                self.given_node(start, |parser, nearest| parser.attribute((start, word), nearest))
+            }
             _ if self.program.defines(word) => self.call(start, word),
             _ if self.is_loop(word) => self.for_node(start),
             _ if self.is_condition(word) => self.if_node(start),
             _ if self.is_include(word) => Begun::Leaf(self.include_node(start)),
-            CONSTANT => self.constant(start, Precedence::Nearest),
+            CONSTANT => self.given_node(start, Self::constant),
+            STYLE => self.style_node(start, Precedence::Nearest),
             OVERRIDE => self.override_node(start),
             EMPTY => {
                 self.count_node(start.span());
@@ -242,26 +245,33 @@ impl<'a> Parser<'a> {
                 *written
             }
             Head::Unary(written) => {
-                let count = children.len();
-                if count != 1 && !frame.incomplete {
-                    let word = self.source(frame.span).split_ascii_whitespace().next().unwrap_or_default();
-                    self.report(|| {
-                        let error = |what: &str| {
-                            Diagnostic::error(Some(frame.span), format!("`{}` has {what}", clip(word)))
-                        };
-                        match count {
-                            0 => error("no node in its block").expected("expected one"),
-                            _ => error(&format!("{count} nodes in its block"))
-                                .expected("expected one; `sum { .. }` around them makes them one"),
-                        }
-                    });
-                }
+                self.check_single(frame.span, frame.incomplete, children.len());
                 *written
+            }
+            Head::Styled(style, precedence) => {
+                self.check_single(frame.span, frame.incomplete, children.len());
+                return self.styled(frame.span, (&style, precedence), children);
             }
         };
         let made = self.make(frame.span, written, children);
         let Some(around) = frame.around else { return made };
         self.make(frame.span, *around, vec![made])
+    }
+
+    /// The block of a node with one child has one.
+    fn check_single(&mut self, span: Span, is_incomplete: bool, count: usize) {
+        if count == 1 || is_incomplete {
+            return;
+        }
+        let word = self.source(span).split_ascii_whitespace().next().unwrap_or_default();
+        self.report(|| {
+            let error = |what: &str| Diagnostic::error(Some(span), format!("`{}` has {what}", clip(word)));
+            match count {
+                0 => error("no node in its block").expected("expected one"),
+                _ => error(&format!("{count} nodes in its block"))
+                    .expected("expected one; `sum { .. }` around them makes them one"),
+            }
+        });
     }
 
     fn select(&mut self, start: Token) -> Begun<'a> {
@@ -308,44 +318,66 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// An attribute or a constant that overrides, whose word, `start`, has just been taken.
+    /// An attribute or a constant that does not override, whose word, `start`, has just been taken.
+    fn given_node(
+        &mut self,
+        start: Token,
+        given: impl FnOnce(&mut Self, Precedence) -> Option<Written>,
+    ) -> Begun<'a> {
+        let written = given(self, Precedence::Nearest);
+        self.unary(start, written)
+    }
+
+    /// An attribute, a constant or a style that overrides, whose word, `start`, has just been taken.
     fn override_node(&mut self, start: Token) -> Begun<'a> {
         let precedence = Precedence::Override;
+        if self.peek_word().is_some_and(|word| self.is_style(word)) {
+            self.next();
+            return self.style_node(start, precedence);
+        }
+        let Some(given) = self.given(precedence) else {
+            self.expected_at(self.peek(), "expected an attribute's name, `constant` or `style`");
+            return self.block(start, Head::Broken);
+        };
+        self.unary(start, given)
+    }
+
+    /// An attribute or a constant without its block, if one is next; nothing of it after an error.
+    pub(super) fn given(&mut self, precedence: Precedence) -> Option<Option<Written>> {
         match self.peek_word() {
             Some(word) if self.group(word).is_some() => {
                 let at = self.next();
-                self.attribute(start, (at, word), precedence)
+                Some(self.attribute((at, word), precedence))
             }
             Some(GROUP_NODE) => {
                 self.next();
-                self.named_attribute(start, precedence)
+                Some(self.named_attribute(precedence))
             }
             Some(CONSTANT) => {
                 self.next();
-                self.constant(start, precedence)
+                Some(self.constant(precedence))
             }
-            _ => {
-                self.expected_at(self.peek(), "expected an attribute's name, or `constant`");
-                self.block(start, Head::Broken)
-            }
+            _ => None,
         }
+    }
+
+    /// Whether a word begins an attribute or a constant of a style.
+    pub(super) fn begins_given(&self, word: &str) -> bool {
+        self.group(word).is_some() || [GROUP_NODE, CONSTANT, OVERRIDE].contains(&word)
     }
 
     /// An attribute whose name is next.
-    fn named_attribute(&mut self, start: Token, precedence: Precedence) -> Begun<'a> {
-        match self.peek_word() {
-            Some(name) => {
-                let at = self.next();
-                self.attribute(start, (at, name), precedence)
-            }
-            None => {
-                self.expected_at(self.peek(), "expected an attribute's name");
-                self.block(start, Head::Broken)
-            }
-        }
+    fn named_attribute(&mut self, precedence: Precedence) -> Option<Written> {
+        let Some(name) = self.peek_word() else {
+            self.expected_at(self.peek(), "expected an attribute's name");
+            return None;
+        };
+        let at = self.next();
+        self.attribute((at, name), precedence)
     }
 
-    fn attribute(&mut self, start: Token, (at, name): (Token, &str), precedence: Precedence) -> Begun<'a> {
+    /// An attribute whose name has just been taken; nothing after an error.
+    fn attribute(&mut self, (at, name): (Token, &str), precedence: Precedence) -> Option<Written> {
         let group = self.attributes.iter().find(|group| &*group.name == name);
         let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
             self.report_with(|parser| {
@@ -353,10 +385,10 @@ impl<'a> Parser<'a> {
                     .expected(parser.known_groups())
             });
             self.number_or_elements();
-            return self.block(start, Head::Broken);
+            return None;
         };
-        let value = self.attribute_value(at, &name, width);
-        self.unary(start, value.map(|value| Written::Attribute { name, value, precedence }))
+        let value = self.attribute_value(at, &name, width)?;
+        Some(Written::Attribute { name, value, precedence })
     }
 
     fn known_groups(&self) -> String {

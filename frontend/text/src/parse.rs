@@ -11,7 +11,7 @@ use super::program::known::Value;
 use super::state::{Options, Parser};
 use super::texts::Texts;
 use super::words::is_builtin;
-use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::attribute::{AttributeGroup, DIRECTION, GroupKind, Mixing};
 use jbt_model::diagnostic::{Diagnostic, Span, escape};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, NumberFormula};
@@ -137,6 +137,7 @@ impl<'a> Parser<'a> {
         let word = self.text(token);
         let name = self.peek_behind();
         let key = match word {
+            _ if self.begins_style(word) => format!("{word} {}", self.text(name)),
             _ if self.begins_definition(word) => return,
             _ if self.begins_part(word) => format!("{PART} {}", self.part_name()),
             "jbt" | "iso" | "origin" => word.to_owned(),
@@ -281,6 +282,14 @@ impl<'a> Parser<'a> {
             return;
         };
         let width_at = self.peek();
+        let turns = self.peek_word() == Some(DIRECTION)
+            && self.parameter(DIRECTION).is_none()
+            && self.program.value(DIRECTION).is_none();
+        if turns {
+            self.next();
+            self.group_statement((name, span, width_at), Some(3), GroupKind::Direction);
+            return;
+        }
         let width = self.expression(ExpressionPlace::Alone);
         self.declares(Fixture::Declaration, &width.number, width.span);
         let (width, width_span) = (width.number.value(), width.span);
@@ -294,7 +303,16 @@ impl<'a> Parser<'a> {
                 .expected("expected the number of its reals")
             });
         }
-        let width = right.then_some(width as usize);
+        self.group_statement((name, span, width_at), right.then_some(width as usize), GroupKind::Numbers);
+    }
+
+    /// The declaration of a group behind its width, if that is known.
+    fn group_statement(
+        &mut self,
+        (name, span, width_at): (&str, Span, Token),
+        width: Option<usize>,
+        kind: GroupKind,
+    ) {
         let mut default = None;
         if !self.is_muted() && self.accept_word("default") {
             let from = self.peek().start;
@@ -313,6 +331,7 @@ impl<'a> Parser<'a> {
             name: Arc::from(name),
             default: default.unwrap_or_else(|| vec![if name == "color" { 1.0 } else { 0.0 }; width]),
             mixing: mixing.unwrap_or(Mixing::Blend),
+            kind,
         };
         self.declare(group, span);
     }

@@ -9,31 +9,30 @@ use std::fmt::Write as _;
 
 use super::parse::ROOT;
 use super::part::PART;
-use super::particles::AT;
-use super::words::{
-    COMMON_FIELDS, EMPTY, EXPRESSION, GROUP_NODE, PARTICLES, WEIGHTED, field_word, is_reserved, texture_named,
-};
-use jbt_model::attribute::{AttributeGroup, Precedence};
-use jbt_model::combine::{CombinatorKind, Syntax};
-use jbt_model::diagnostic::escape;
-use jbt_model::expression::{Formula, write as write_formula};
-use jbt_model::falloff::FalloffKind;
-use jbt_model::field::{FieldKind, NumberText as _};
+use super::words::{EMPTY, WEIGHTED};
+use jbt_model::attribute::{AttributeGroup, DIRECTION};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
 use jbt_model::parameter::{Parameter, ParameterRange};
-use jbt_model::particles::{ParticleValues, PerParticle};
 use jbt_model::tree::Tree;
-use jbt_model::word::{CONSTANT, OVERRIDE, is_identifier, is_statement};
-use jbt_model::written::{
-    FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
-    WrittenTextured, WrittenUv,
-};
+use jbt_model::word::{STYLE, is_identifier, is_statement};
+use jbt_model::written::Written;
 
+mod attribute;
+mod comment;
+mod formula;
+pub(super) mod head;
 mod list;
+mod numbers;
+mod style;
 
-use list::list;
+use attribute::before;
+use comment::comment;
+use formula::expression;
+use head::head;
+use numbers::{group_values, vector};
+use style::Styles;
 
 /// Operators below this depth are printed on one line.
 const DEEPEST: usize = 12;
@@ -66,8 +65,11 @@ pub fn print(model: &Model) -> String {
         }
     }
     out.push('\n');
-    let (order, names) = shared(model);
-    let printer = Printer { names, definitions: free_prefix(model) };
+    let definitions = free_prefix(model);
+    let styles = Styles::of(model);
+    styles.print(&mut out, model, &definitions);
+    let (order, names) = shared(model, &styles);
+    let printer = Printer { names, definitions, styles };
     for tree in order {
         let name = &printer.names[&tree.identity()];
         comment(&mut out, model, &format!("let {name}"));
@@ -92,17 +94,6 @@ pub fn print(model: &Model) -> String {
     out
 }
 
-/// The comment in front of a statement.
-fn comment(out: &mut String, model: &Model, statement: &str) {
-    let lines = model.comments.get(statement).into_iter().flat_map(|text| text.lines());
-    for line in lines {
-        let line = escape(line);
-        // What is no comment would be a statement.
-        let mark = if line.is_empty() || line.starts_with('#') { "" } else { "# " };
-        let _ = writeln!(out, "{mark}{line}");
-    }
-}
-
 pub(super) fn print_parameter(out: &mut String, parameter: &Parameter) {
     let _ = write!(out, "param {} = {}", parameter.name(), parameter.source());
     if let Some(ParameterRange { low, high, step }) = parameter.range() {
@@ -117,23 +108,9 @@ pub(super) fn print_parameter(out: &mut String, parameter: &Parameter) {
     out.push('\n');
 }
 
-fn vector(numbers: impl IntoIterator<Item = impl Into<Number>>) -> String {
-    let numbers: Vec<String> = numbers.into_iter().map(|number| number.into().text()).collect();
-    format!("({})", numbers.join(" "))
-}
-
-/// The values of an attribute: one number without parentheses.
-fn group_values<T: Into<Number>>(values: impl IntoIterator<Item = T>) -> String {
-    let values: Vec<Number> = values.into_iter().map(Into::into).collect();
-    match &values[..] {
-        [value] => value.text(),
-        values => vector(values),
-    }
-}
-
 fn declaration(out: &mut String, group: &AttributeGroup) {
-    let (width, default, mixing) =
-        (group.width(), group_values(group.default.iter().copied()), group.mixing.name());
+    let width = if group.turns() { DIRECTION.to_owned() } else { group.width().to_string() };
+    let (default, mixing) = (group_values(group.default.iter().copied()), group.mixing.name());
     let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
 }
 
@@ -153,7 +130,7 @@ fn free_prefix(model: &Model) -> String {
 
 /// The subtrees that stand by themselves, children before parents, and the name of each by its identity:
 /// those that have more than one use, that stand in a formula, or that have a comment.
-fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
+fn shared<'a>(model: &'a Model, styles: &Styles) -> (Vec<&'a Tree>, HashMap<usize, String>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
     let mut alone = HashSet::new();
     let mut finished = Vec::new();
@@ -177,7 +154,10 @@ fn shared(model: &Model) -> (Vec<&Tree>, HashMap<usize, String>) {
             if node.name().is_some_and(is_said) {
                 alone.insert(tree.identity());
             }
-            stack.extend(node.children().iter().rev().map(|child| (child, false)));
+            match styles.used(tree) {
+                Some(style) => stack.push((style.below, false)),
+                None => stack.extend(node.children().iter().rev().map(|child| (child, false))),
+            }
         }
     }
     finished.retain(|tree| uses[&tree.identity()] > 1 || alone.contains(&tree.identity()));
@@ -210,6 +190,7 @@ struct Printer {
     names: HashMap<usize, String>,
     /// What names of definitions begin with.
     definitions: String,
+    styles: Styles,
 }
 
 impl Printer {
@@ -257,6 +238,12 @@ impl Printer {
 
     /// Prints a node's head and leaves the rest of it on the stack.
     fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
+        if let Some(style) = self.styles.used(tree) {
+            before(out, style.precedence);
+            let _ = write!(out, "{STYLE} {} {{ ", style.name);
+            stack.extend([Item::Text(" }"), Item::Tree(style.below, depth)]);
+            return;
+        }
         let children = tree.node().children();
         let child = |place: usize| match children.get(place) {
             Some(child) => self.names[&child.identity()].clone(),
@@ -300,197 +287,4 @@ fn block<'a>(out: &mut String, stack: &mut Vec<Item<'a>>, children: &'a [Tree], 
         stack.push(Item::Tree(child, depth + 1));
         stack.push(Item::Line(depth + 1));
     }
-}
-
-/// The head of an operator. Numbers are written even where they have their defaults.
-fn operator(out: &mut String, kind: CombinatorKind, fields: &[FieldNumber]) {
-    out.push_str(kind.head());
-    for (described, value) in kind.fields().iter().zip(fields) {
-        let FieldNumber::Real(number) = value else { unreachable!("operators have numbers") };
-        let _ = match (described.kind, kind.syntax()) {
-            (FieldKind::Choice(words), _) => {
-                write!(out, " {}", words.get(number.value() as usize).unwrap_or(&words[0]))
-            }
-            (_, Syntax::Named) => write!(out, " {} {number}", described.name),
-            (_, Syntax::Labelled | Syntax::Alone) => write!(out, " {number}"),
-        };
-    }
-}
-
-/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with
-/// `definitions`.
-pub(super) fn head(out: &mut String, written: &Written, definitions: &str) {
-    match written {
-        Written::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
-            let _ = write!(out, "{} {{", kind.name());
-            for (described, value) in kind.fields().iter().zip(fields) {
-                described.write(out, &field_word(*kind, described), value);
-            }
-            let _ = match radius {
-                Radius::Support(radius) => write!(out, " radius {radius}"),
-                Radius::Surface(radius) => write!(out, " surface_radius {radius}"),
-            };
-            falloff_of_leaf(out, falloff);
-            if strength.depends_on_parameters() || strength.value().to_bits() != 1f64.to_bits() {
-                let _ = write!(out, " strength {strength}");
-            }
-            out.push_str(" }");
-        }
-        Written::Particles(written) => particles(out, written),
-        Written::Combine { combinator, fields } => operator(out, *combinator, fields),
-        Written::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
-        Written::Select(which) => {
-            let _ = write!(out, "select {which}");
-        }
-        Written::Map { map, fields } => {
-            out.push_str(map.name());
-            if map.is_named() {
-                map.fields()
-                    .iter()
-                    .zip(fields)
-                    .for_each(|(field, value)| field.write(out, field.name, value));
-            } else {
-                let all: Vec<&Number> = fields.iter().flat_map(FieldNumber::numbers).collect();
-                let _ = write!(out, " {}", group_values(all));
-            }
-        }
-        Written::Warp { warp, fields } => {
-            out.push_str(warp.name());
-            for (described, value) in warp.fields().iter().zip(fields) {
-                described.write(out, described.name, value);
-            }
-        }
-        Written::FormulaWarp(formula) => formula_warp(out, formula, definitions),
-        Written::Attribute { name, value, precedence } => {
-            before(out, *precedence);
-            attribute(out, name, value, definitions);
-        }
-        Written::Constant { name, value, precedence } => {
-            before(out, *precedence);
-            let _ = write!(out, "{CONSTANT} {name} {value}");
-        }
-    }
-}
-
-/// The head of a warp that is given by formulas.
-fn formula_warp(out: &mut String, formula: &Formula, definitions: &str) {
-    out.push_str("warp (");
-    let definition = |place: usize| format!("{definitions}{}", place + 1);
-    // The check refuses those that ask for fields.
-    let child = |place: usize| format!("missing{place}");
-    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, false);
-    out.push(')');
-}
-
-/// A formula with its block. `child` names the trees that it asks for.
-fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> String, definitions: &str) {
-    let _ = write!(out, "{EXPRESSION} ");
-    if let Some(sides) = formula.form.box_numbers(&formula.numbers) {
-        let _ = write!(out, "within {} to {} ", vector(&sides[..3]), vector(&sides[3..]));
-    }
-    out.push_str("{ ");
-    let definition = |place: usize| format!("{definitions}{}", place + 1);
-    let tuple = formula.form.results.len() > 1;
-    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, tuple);
-    out.push_str(" }");
-}
-
-/// What stands before an attribute or a constant.
-fn before(out: &mut String, precedence: Precedence) {
-    match precedence {
-        Precedence::Nearest => {}
-        Precedence::Override => {
-            let _ = write!(out, "{OVERRIDE} ");
-        }
-    }
-}
-
-fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
-    if is_reserved(name) {
-        let _ = write!(out, "{GROUP_NODE} ");
-    }
-    out.push_str(name);
-    match value {
-        WrittenAttribute::Numbers(numbers) => {
-            let text = group_values(numbers);
-            let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
-            // A parameter that is called like what computes.
-            let hidden = first.is_some_and(|word| word == EXPRESSION || texture_named(word).is_some());
-            let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
-        }
-        WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b }) => {
-            let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
-            for (described, value) in texture.fields().iter().zip(fields) {
-                described.write(out, described.name, value);
-            }
-            out.push_str(" }");
-        }
-        WrittenAttribute::Uv(map) => uv(out, map),
-        WrittenAttribute::Expressed(formula) => {
-            out.push(' ');
-            expression(out, formula, |place| format!("n{place}"), definitions);
-        }
-    }
-}
-
-/// A map of uv, without the parts that change nothing.
-fn uv(out: &mut String, map: &WrittenUv) {
-    let identity = WrittenUv::default();
-    if !same_numbers(&map.scale, &identity.scale) {
-        let _ = write!(out, " scale {}", vector(&map.scale));
-    }
-    if !same_numbers(std::slice::from_ref(&map.degrees), &[identity.degrees]) {
-        let _ = write!(out, " rotate {}", map.degrees);
-    }
-    if !same_numbers(&map.shift, &identity.shift) {
-        let _ = write!(out, " shift {}", vector(&map.shift));
-    }
-}
-
-/// Whether numbers are plain and have the same bits.
-fn same_numbers(a: &[Number], b: &[Number]) -> bool {
-    let plain = |number: &Number| (!number.depends_on_parameters()).then(|| number.value().to_bits());
-    a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
-}
-
-/// The falloff of a primitive, or of particles.
-fn falloff_of_leaf(out: &mut String, falloff: &WrittenFalloff) {
-    if falloff.kind() != FalloffKind::Soft {
-        let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
-    }
-}
-
-/// Particles: all of the node.
-fn particles(out: &mut String, written: &WrittenParticles) {
-    let WrittenParticles { positions, radius, strength, falloff, values } = written;
-    let _ = write!(out, "{PARTICLES} {{");
-    match radius {
-        ParticleRadius::Support(radius) => per_particle(out, "radius", radius),
-        ParticleRadius::Surface(radius) => per_particle(out, "surface_radius", radius),
-    }
-    falloff_of_leaf(out, falloff);
-    let is_one =
-        |number: &Number| !number.depends_on_parameters() && number.value().to_bits() == 1f64.to_bits();
-    if !strength.all().is_some_and(is_one) {
-        per_particle(out, "strength", strength);
-    }
-    for ParticleValues { name, width, numbers } in &**values {
-        let is_taken = is_reserved(name) || **name == *AT || COMMON_FIELDS.contains(&&**name);
-        let _ = if is_taken { write!(out, " {GROUP_NODE} {name} ") } else { write!(out, " {name} ") };
-        if numbers.len() == *width {
-            out.push_str(&group_values(numbers.iter()));
-        } else {
-            list(out, numbers, *width);
-        }
-    }
-    let _ = write!(out, " {AT} ");
-    list(out, positions, 3);
-    out.push_str(" }");
-}
-
-fn per_particle(out: &mut String, word: &str, numbers: &PerParticle<Number>) {
-    let _ = match numbers {
-        PerParticle::All(number) => write!(out, " {word} {number}"),
-        PerParticle::Each(numbers) => write!(out, " {word} ").map(|()| list(out, numbers, 1)),
-    };
 }

@@ -19,17 +19,17 @@ mod number;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
 
-use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::attribute::{AttributeGroup, GroupKind, Mixing};
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
 use jbt_model::parameter::{Parameter, ParameterRange};
 use jbt_model::traverse::Visit;
-use jbt_model::tree::Tree;
+use jbt_model::tree::{StyleUse, Tree};
 use jbt_model::written::Written;
 
 use names::RustNames;
-use node::{RustTree, is_operator};
+use node::{RustTree, is_operator, overriding};
 use number::{RustBody, list, literal};
 
 /// Chains of maps longer than this are broken by a variable.
@@ -100,6 +100,9 @@ impl RustBody {
                 })
                 .collect();
             let mut text = self.node(node.written(), &children);
+            if let Some(styled) = tree.style().and_then(|style| self.styled(&style, &text)) {
+                text = styled;
+            }
             for child in node.children() {
                 // What stands in one place alone is there now.
                 if uses[&child.identity()] == 1 && !done[&child.identity()].is_variable {
@@ -126,6 +129,25 @@ impl RustBody {
             done.insert(identity, RustTree { text, is_variable });
         }
         done.remove(&root.identity()).map_or_else(String::new, |root| root.text)
+    }
+
+    /// What a style gives to a tree, as one call; `text` has it as several. Nothing if these have been torn
+    /// apart.
+    fn styled(&mut self, style: &StyleUse<'_>, text: &str) -> Option<String> {
+        let given: Vec<Written> = style.values.iter().map(|&value| value.clone()).collect();
+        let below = text.strip_suffix(&self.calls(&given))?;
+        let calls = self.calls(&style.definition());
+        let end = overriding(style.precedence);
+        Some(format!("{below}.styled({:?}, |tree| tree{calls}){end}", style.name))
+    }
+
+    /// Calls that put attributes and constants around what stands before them.
+    fn calls(&mut self, values: &[Written]) -> String {
+        let mut calls = RustTree { text: String::new(), is_variable: false };
+        for value in values.iter().rev() {
+            calls.text = self.node(value, &[calls.clone()]);
+        }
+        calls.text
     }
 
     /// The fields of a model that are not those of every model, a line for each.
@@ -195,8 +217,15 @@ fn declaration(group: &AttributeGroup) -> String {
         Mixing::Dominant => "Dominant",
     };
     let default = list(group.default.iter().copied().map(literal));
-    format!(
-        "            AttributeGroup {{ name: {:?}.into(), default: vec!{default}, mixing: Mixing::{mixing} }},\n",
-        &*group.name
-    )
+    let name = &*group.name;
+    match group.kind {
+        GroupKind::Numbers => format!(
+            "            AttributeGroup {{ name: {name:?}.into(), default: vec!{default}, mixing: Mixing::{mixing}, \
+             ..AttributeGroup::color() }},\n"
+        ),
+        GroupKind::Direction => format!(
+            "            AttributeGroup {{ mixing: Mixing::{mixing}, \
+             ..AttributeGroup::direction({name:?}, {default}) }},\n"
+        ),
+    }
 }

@@ -10,7 +10,7 @@ use jbt_model::map::MapKind;
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::texture::TextureKind;
 use jbt_model::warp::WarpKind;
-use jbt_model::word::is_statement;
+use jbt_model::word::{OVERRIDE, STYLE, is_statement};
 
 /// The word before the name of an attribute group that is called like a word of the format.
 pub(super) const GROUP_NODE: &str = "with";
@@ -39,6 +39,9 @@ pub(super) const PARTICLES: &str = "particles";
 
 /// The word for a node whose field is 0 everywhere. A group or a definition may have this name.
 pub(super) const EMPTY: &str = "empty";
+
+/// Words that begin a node unless they are the name of a value or a node where one may stand.
+pub(super) const NAMES_FIRST: [&str; 2] = [OVERRIDE, STYLE];
 
 /// The other words that begin a node.
 pub(super) const OTHERS: [&str; 9] =

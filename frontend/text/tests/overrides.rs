@@ -106,8 +106,8 @@ fn a_group_of_this_name_is_what_it_was() {
 #[test]
 fn what_is_wrong_has_its_place() {
     for (text, message, caret) in [
-        ("override { point { radius 1 } }", "expected an attribute's name, or `constant`", "^"),
-        ("override point { radius 1 }", "expected an attribute's name, or `constant`", "^^^^^"),
+        ("override { point { radius 1 } }", "expected an attribute's name, `constant` or `style`", "^"),
+        ("override point { radius 1 }", "expected an attribute's name, `constant` or `style`", "^^^^^"),
         ("override with { point { radius 1 } }", "expected an attribute's name", "^"),
         ("override color (1 0 0) { }", "`override` has no node in its block", "^^^^^^^^^^^^^^^^^^^^^^"),
         ("overide color (1 0 0) { point { radius 1 } }", "perhaps `override`", "^^^^^^^"),

@@ -181,6 +181,21 @@ impl Domain for Scalar {
     }
 
     #[inline]
+    fn slope_x(&mut self, _: f32) -> f32 {
+        0.0
+    }
+
+    #[inline]
+    fn slope_y(&mut self, _: f32) -> f32 {
+        0.0
+    }
+
+    #[inline]
+    fn slope_z(&mut self, _: f32) -> f32 {
+        0.0
+    }
+
+    #[inline]
     fn low_end(&mut self, a: f32) -> f32 {
         a
     }

@@ -92,6 +92,9 @@ fn decide(masks: &HashMap<Value, bool>, op: Op, args: &[Value]) -> Option<Value>
         | Op::Ln
         | Op::Pow
         | Op::StopGradient
+        | Op::SlopeX
+        | Op::SlopeY
+        | Op::SlopeZ
         | Op::LowEnd => None,
     }
 }

@@ -12,6 +12,8 @@
 //! (s, sx, sy, sz) = fold t0 rows neutral (0, 0, 0, 0) (acc, ax, ay, az): ... yield next, nx, ny, nz
 //! ```
 
+use std::borrow::Cow;
+
 use smallvec::SmallVec;
 
 use crate::builder::FunctionBuilder;
@@ -31,6 +33,34 @@ pub fn gradient(function: &Function) -> Function {
     with_gradient(function, Tangent::new(FunctionBuilder::like(function)))
 }
 
+/// The function with derivatives in place of its slopes, and no output more.
+pub(super) fn slopes(function: &Function) -> Cow<'_, Function> {
+    let has_slopes = function.insts.values().any(|inst| asks_slope(inst).is_some());
+    if !has_slopes {
+        return Cow::Borrowed(function);
+    }
+    let tangent = Tangent::new(FunctionBuilder::like(function));
+    let differentiated = differentiated(function, None);
+    let mut differentiation = Differentiation { differentiated, function, tangent };
+    let results = translate(function, &mut differentiation);
+    let values = results.into_iter().map(|result| result.real().value);
+    let outputs: Vec<(String, Value)> = function.outputs.iter().cloned().zip(values).collect();
+    Cow::Owned(differentiation.tangent.builder.finish(&outputs))
+}
+
+/// The value whose slope an instruction is.
+fn asks_slope(inst: &InstData) -> Option<Value> {
+    match &inst.kind {
+        InstKind::Op { op: Op::SlopeX | Op::SlopeY | Op::SlopeZ, args } => Some(args[0]),
+        InstKind::Op { .. }
+        | InstKind::Input(_)
+        | InstKind::Constant(_)
+        | InstKind::BitsConstant(_)
+        | InstKind::Column { .. }
+        | InstKind::Fold(_) => None,
+    }
+}
+
 /// As [`gradient`], with guards: every component is finite and within
 /// [`LARGEST_SLOPE`](crate::domain::tangent::LARGEST_SLOPE), whatever overflows on the way. Where nothing
 /// overflows, the bits are the same. It costs several times as many ops.
@@ -40,7 +70,9 @@ pub fn guarded_gradient(function: &Function) -> Function {
 }
 
 fn with_gradient(function: &Function, tangent: Tangent) -> Function {
-    let mut differentiation = Differentiation { differentiated: differentiated(function), function, tangent };
+    let first = function.blocks[function.body].results.first().copied();
+    let differentiated = differentiated(function, first);
+    let mut differentiation = Differentiation { differentiated, function, tangent };
     let results = translate(function, &mut differentiation);
     let mut outputs = Vec::new();
     for (index, (name, result)) in function.outputs.iter().zip(results).enumerate() {
@@ -61,11 +93,11 @@ fn with_gradient(function: &Function, tangent: Tangent) -> Function {
     differentiation.tangent.builder.finish(&outputs)
 }
 
-/// The values that the first output depends on.
-fn wanted(function: &Function) -> Vec<bool> {
+/// The values that `first` depends on, or anything whose slope is asked for.
+fn wanted(function: &Function, first: Option<Value>) -> Vec<bool> {
     let mut wanted = vec![false; function.values.len()];
     let mut waiting: Vec<Value> =
-        function.blocks[function.body].results.first().copied().into_iter().collect();
+        first.into_iter().chain(function.insts.values().filter_map(asks_slope)).collect();
     // The direct dependences of each value: its operands; for an accumulator, its initial and its next value.
     let mut sources: Vec<Vec<Value>> = vec![Vec::new(); function.values.len()];
     for inst in function.insts.values() {
@@ -94,10 +126,10 @@ fn wanted(function: &Function) -> Vec<bool> {
     wanted
 }
 
-/// Which values depend on the inputs and change the first output.
-fn differentiated(function: &Function) -> Vec<bool> {
+/// Which values depend on the inputs and change `first`, or anything whose slope is asked for.
+fn differentiated(function: &Function, first: Option<Value>) -> Vec<bool> {
     let mut varies = depends_on_point(function);
-    for (varies, wanted) in varies.iter_mut().zip(wanted(function)) {
+    for (varies, wanted) in varies.iter_mut().zip(wanted(function, first)) {
         *varies &= wanted;
     }
     // An accumulator may be wanted only in the body, or only behind the fold: its tangent exists in both or
@@ -126,7 +158,8 @@ fn depends_on_point(function: &Function) -> Vec<bool> {
                 InstKind::Input(index) => varies[inst.results[0].index()] = *index < 3,
                 InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
                 InstKind::Op { op, args } => {
-                    let held = *op == Op::StopGradient || op.result() != Type::Real;
+                    let held = matches!(op, Op::StopGradient | Op::SlopeX | Op::SlopeY | Op::SlopeZ)
+                        || op.result() != Type::Real;
                     varies[inst.results[0].index()] = !held && args.iter().any(|arg| varies[arg.index()]);
                 }
                 InstKind::Fold(fold) => {
@@ -194,7 +227,7 @@ impl Translation for Differentiation<'_> {
 
     /// Where nothing needs the tangent of the result, operands go without theirs.
     fn op(&mut self, inst: &InstData, op: Op, args: &[Any<Tangent>]) -> Any<Tangent> {
-        if self.differentiated[inst.results[0].index()] {
+        if self.differentiated[inst.results[0].index()] || asks_slope(inst).is_some() {
             return apply(&mut self.tangent, op, args);
         }
         let args: SmallVec<[Any<Tangent>; 3]> = args.iter().map(|&arg| still(arg)).collect();

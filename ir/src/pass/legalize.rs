@@ -4,17 +4,19 @@
 //! the same steps. `stop_gradient` matters to the gradient only, which has been taken by now: it becomes its
 //! operand.
 
+use super::gradient::slopes;
 use crate::builder::FunctionBuilder;
 use crate::entity::Value;
 use crate::function::Function;
 use crate::math;
-use crate::op::Op;
+use crate::op::{Domain as _, Op};
 use crate::translate::rewrite;
 
 /// The function without transcendentals, `stop_gradient` and `low_end`.
 #[must_use]
 pub fn legalize(function: &Function) -> Function {
-    rewrite(function, expand)
+    // Whoever asks for slopes and not for the gradient has them here.
+    rewrite(&slopes(function), expand)
 }
 
 fn expand(builder: &mut FunctionBuilder, op: Op, args: &[Value]) -> Value {
@@ -25,6 +27,7 @@ fn expand(builder: &mut FunctionBuilder, op: Op, args: &[Value]) -> Value {
         Op::Ln => math::ln(builder, args[0]),
         Op::Pow => math::pow(builder, args[0], args[1]),
         Op::StopGradient | Op::LowEnd => args[0],
+        Op::SlopeX | Op::SlopeY | Op::SlopeZ => builder.constant(0.0),
         Op::Add
         | Op::Sub
         | Op::Mul

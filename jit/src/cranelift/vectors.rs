@@ -239,6 +239,18 @@ impl<const K: usize> Domain for Vectors<'_, K> {
         a
     }
 
+    fn slope_x(&mut self, _: [Value; K]) -> [Value; K] {
+        self.constant(0.0)
+    }
+
+    fn slope_y(&mut self, _: [Value; K]) -> [Value; K] {
+        self.constant(0.0)
+    }
+
+    fn slope_z(&mut self, _: [Value; K]) -> [Value; K] {
+        self.constant(0.0)
+    }
+
     fn low_end(&mut self, a: [Value; K]) -> [Value; K] {
         a
     }

@@ -67,7 +67,9 @@ impl WalkState<'_> {
             Op::ToBits | Op::FromBits | Op::StopGradient | Op::LowEnd => {
                 unreachable!("the list has other names for these")
             }
-            Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => unreachable!("functions are checked first"),
+            Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow | Op::SlopeX | Op::SlopeY | Op::SlopeZ => {
+                unreachable!("functions are checked first")
+            }
         }
     }
 

@@ -33,11 +33,13 @@ class Group:
         name: its name.
         default: the value of leaves without the attribute; as long as the group is wide.
         mixing: "blend", the mean by weights, or "dominant", that of the leaf with the largest weight.
+        direction: whether values are directions, which turn with maps and warps.
     """
 
     name: str
     default: tuple[float, ...]
     mixing: str
+    direction: bool = False
 
 
 @dataclass(frozen=True)
@@ -200,7 +202,7 @@ class Model(ModelMembers):
         >>> import jbt
         >>> ball = jbt.point(radius=1).attribute("rough", 0.9)
         >>> ball.groups[1]
-        Group(name='rough', default=(0.0,), mixing='blend')
+        Group(name='rough', default=(0.0,), mixing='blend', direction=False)
         """
         return Model(self._native.attribute(name, values))
 
@@ -216,8 +218,9 @@ class Model(ModelMembers):
         return Model(self._native.constant(name, value))
 
     def overriding(self) -> Model:
-        """The same, but the attribute or constant that it begins with counts for all leaves below, whatever
-        stands nearer to them. Of several that override, the one that was put around the others counts.
+        """The same, but the attribute, constant or style that it begins with counts for all leaves below,
+        whatever stands nearer to them. Of several that override, the one that was put around the others
+        counts.
 
         >>> import jbt
         >>> pin = jbt.point(radius=1).constant("part", 17)
@@ -225,6 +228,18 @@ class Model(ModelMembers):
         [{'part': 1}]
         """
         return Model(self._native.overriding())
+
+    def styled(self, name: str, style: Callable[[Model], Model]) -> Model:
+        """With attributes and constants that have a name together: what `style` puts around the model. Texts
+        have it once, as `style`.
+
+        >>> import jbt
+        >>> oak = lambda model: model.constant("material", "oak").color((0.5, 0.25, 0.125))
+        >>> bowl = jbt.point(radius=1).styled("oak", oak)
+        >>> 'style oak = { color (0.5 0.25 0.125) constant material "oak" }' in str(bowl)
+        True
+        """
+        return Model(style(self)._native.styled(name, self._native))
 
     def textured(self, name: str, pattern: _jbt.Pattern, a: Reals, b: Reals) -> Model:
         """An attribute by a pattern: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the
@@ -322,13 +337,27 @@ class Model(ModelMembers):
     @property
     def groups(self) -> tuple[Group, ...]:
         """Its groups of attributes, `color` first."""
-        return tuple(Group(name, tuple(default), mixing) for name, default, mixing in self._native.groups())
+        return tuple(
+            Group(name, tuple(default), mixing, direction)
+            for name, default, mixing, direction in self._native.groups()
+        )
 
     def group(
-        self, name: str, default: Sequence[float], *, mixing: Literal["blend", "dominant"] = "blend"
+        self,
+        name: str,
+        default: Sequence[float],
+        *,
+        mixing: Literal["blend", "dominant"] = "blend",
+        direction: bool = False,
     ) -> Model:
-        """The same with a group of attributes declared so; it is as wide as its default."""
-        return Model(self._native.group(name, [float(number) for number in default], mixing))
+        """The same with a group of attributes declared so; it is as wide as its default. A direction turns
+        with maps and warps.
+
+        >>> import jbt
+        >>> jbt.point(radius=1).group("grain", (0, 0, 1), direction=True).groups[1].direction
+        True
+        """
+        return Model(self._native.group(name, [float(number) for number in default], mixing, direction))
 
     @property
     def parameters(self) -> dict[str, float]:

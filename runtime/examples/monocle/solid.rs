@@ -57,6 +57,11 @@ pub fn monocle() -> Tree {
 
 /// A tree with materials as a model.
 pub fn model(root: Tree) -> Model {
-    let materials = AttributeGroup { name: GROUP.into(), default: vec![0.0], mixing: Mixing::Dominant };
+    let materials = AttributeGroup {
+        name: GROUP.into(),
+        default: vec![0.0],
+        mixing: Mixing::Dominant,
+        ..AttributeGroup::color()
+    };
     Model { attributes: vec![AttributeGroup::color(), materials], ..Model::new(root) }
 }

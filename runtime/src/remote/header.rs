@@ -1,6 +1,6 @@
 //! What a model says besides its tree, as bytes: iso-value, origin, orientation, groups of attributes.
 
-use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::attribute::{AttributeGroup, GroupKind, Mixing};
 use jbt_model::check::CheckedTree;
 use jbt_model::model::Model;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
@@ -16,9 +16,10 @@ pub(super) fn write(tree: &CheckedTree, writer: &mut ByteWriter) {
     writer.u8(place(&ModelUp::ALL, up));
     writer.u8(place(&Handed::ALL, handed));
     writer.count(tree.attributes().len());
-    for AttributeGroup { name, default, mixing } in tree.attributes() {
+    for AttributeGroup { name, default, mixing, kind } in tree.attributes() {
         writer.text(name);
         writer.u8(place(&Mixing::ALL, *mixing));
+        writer.u8(place(&GroupKind::ALL, *kind));
         writer.count(default.len());
         default.iter().for_each(|&number| writer.f64(number));
     }
@@ -33,11 +34,12 @@ pub(super) fn read(reader: &mut ByteReader<'_>) -> Result<CheckedTree, FormatErr
     }
     let (up, handed) = (reader.one_of(&ModelUp::ALL)?, reader.one_of(&Handed::ALL)?);
     let mut attributes = Vec::new();
-    for _ in 0..reader.count(17)? {
-        let (name, mixing) = (reader.text()?.into(), reader.one_of(&Mixing::ALL)?);
+    for _ in 0..reader.count(18)? {
+        let name = reader.text()?.into();
+        let (mixing, kind) = (reader.one_of(&Mixing::ALL)?, reader.one_of(&GroupKind::ALL)?);
         let count = reader.count(8)?;
         let default = (0..count).map(|_| reader.f64()).collect::<Result<_, _>>()?;
-        attributes.push(AttributeGroup { name, default, mixing });
+        attributes.push(AttributeGroup { name, default, mixing, kind });
     }
     let anything = jbt_model::builder::point([0, 0, 0], 1);
     let model = Model {

@@ -1,12 +1,22 @@
-//! The distance between two solids: pairs of boxes that may hold nearest points, the nearest pair first.
+//! The distance between two solids: a tree of boxes about each, and pairs of boxes that may hold nearest
+//! points, the nearest pair first.
 //!
 //! ```text
 //! low    no point of one is nearer to one of the other: the least distance of all pairs that are left
 //! high   two points are so far apart: a point of each, at which the kernels say that it is inside
+//!
+//! pop the nearest pair; cut the longer box of it, unless that has been cut; push the pairs with its parts
 //! ```
+//!
+//! A box is cut once, however many pairs it is in. So solids of thousands of parts that are equally near to
+//! each other take that many cuts, and not that of their pairs. A pair is a few bytes. When the work is used
+//! up, the bracket is that of the pairs so far.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::Range;
+
+use jbt_ir::limits::{MAX_GAP_PAIRS, MAX_GAP_WORK};
 
 use super::halves::{halves, ranges};
 use super::{Solid, SolidBatch, center, cut};
@@ -14,8 +24,11 @@ use crate::boxes::{Box3, Divisible as _};
 use crate::error::EvalError;
 use crate::prune::Region;
 
-/// Pairs that are opened at most.
-const MAX_PAIRS: usize = 1 << 17;
+/// What a cut takes besides the rows that run in its box, in rows.
+const CUT_WORK: u64 = 1 << 10;
+
+/// Cuts of one solid in search of a point inside. Thin ones have few.
+const MAX_FIRST_CUTS: usize = 1 << 12;
 
 /// A distance between bounds, in units of the model.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -29,19 +42,127 @@ pub struct Gap {
     pub points: [[f64; 3]; 2],
 }
 
-/// A box that may hold points of a solid, and a point of the solid that is near it, if one is known.
-#[derive(Clone)]
+/// A box that may hold points of a solid.
 struct GapBox {
     bounds: Box3,
-    region: std::sync::Arc<Region>,
+    /// The highest field there.
+    highest: f32,
+    /// A point of the solid that is near it, if one is known.
     inside: Option<[f32; 3]>,
+    parts: GapParts,
+}
+
+/// What a box has been cut into.
+enum GapParts {
+    /// Nothing yet.
+    Uncut(Region),
+    /// Boxes, by their numbers; none if no point of the solid is there.
+    Cut(Range<u32>),
+    /// There are no numbers between its sides.
+    Smallest,
+}
+
+/// The boxes about one solid, the whole one first.
+struct GapTree<'a> {
+    solid: &'a Solid,
+    boxes: Vec<GapBox>,
+    /// What cuts have taken, in rows.
+    work: u64,
+}
+
+impl<'a> GapTree<'a> {
+    fn new(solid: &'a Solid, bounds: Box3) -> Result<Self, EvalError> {
+        let parts = GapParts::Uncut(solid.pruner.region(bounds)?);
+        let whole = GapBox { bounds, highest: f32::INFINITY, inside: None, parts };
+        Ok(Self { solid, boxes: vec![whole], work: 0 })
+    }
+
+    /// The parts of a box that may hold points of the solid; nothing if it cannot be cut.
+    fn parts(&mut self, number: u32) -> Result<Option<Range<u32>>, EvalError> {
+        let place = number as usize;
+        let region = match std::mem::replace(&mut self.boxes[place].parts, GapParts::Smallest) {
+            GapParts::Uncut(region) => region,
+            GapParts::Cut(parts) => {
+                self.boxes[place].parts = GapParts::Cut(parts.clone());
+                return Ok(Some(parts));
+            }
+            GapParts::Smallest => return Ok(None),
+        };
+        let bounds = self.boxes[place].bounds;
+        let parts = cut(&bounds, halves(&bounds));
+        if parts == [bounds] {
+            return Ok(None);
+        }
+        self.work += CUT_WORK + region.rows() as u64;
+        let first = self.boxes.len() as u32;
+        self.add(&region, &parts, self.boxes[place].inside)?;
+        let made = first..self.boxes.len() as u32;
+        self.boxes[place].parts = GapParts::Cut(made.clone());
+        Ok(Some(made))
+    }
+
+    /// Adds those parts of a region that may hold points of the solid.
+    fn add(&mut self, region: &Region, parts: &[Box3], near: Option<[f32; 3]>) -> Result<(), EvalError> {
+        let solid = self.solid;
+        let left: Vec<(Box3, f32)> = parts
+            .iter()
+            .zip(ranges(solid, region, parts)?)
+            .filter(|(_, range)| solid.side(*range) != Some(false))
+            .map(|(part, [_, highest])| (*part, highest))
+            .collect();
+        if left.is_empty() {
+            return Ok(());
+        }
+        let bounds: Vec<Box3> = left.iter().map(|(bounds, _)| *bounds).collect();
+        let mut regions = Vec::new();
+        solid.pruner.narrow(region, &bounds, &mut regions)?;
+        let mut batch = SolidBatch::default();
+        bounds.iter().for_each(|part| batch.push(center(part)));
+        let sides = batch.sides(solid, region)?;
+        for (((bounds, highest), region), is_inside) in left.into_iter().zip(regions).zip(sides) {
+            let inside = if is_inside { Some(center(&bounds)) } else { near };
+            self.boxes.push(GapBox { bounds, highest, inside, parts: GapParts::Uncut(region) });
+        }
+        Ok(())
+    }
+
+    /// Looks for a point of the solid, where its field may be highest; the whole box knows it then. Says
+    /// whether there may be one.
+    fn find(&mut self) -> Result<bool, EvalError> {
+        let mut open = BinaryHeap::from([HighBox { highest: f32::INFINITY, number: 0 }]);
+        for _ in 0..MAX_FIRST_CUTS {
+            let Some(HighBox { number, .. }) = open.pop() else { return Ok(false) };
+            for part in self.parts(number)?.unwrap_or_default() {
+                let GapBox { highest, inside, .. } = self.boxes[part as usize];
+                if inside.is_some() {
+                    self.boxes[0].inside = inside;
+                    return Ok(true);
+                }
+                open.push(HighBox { highest, number: part });
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// A box by its field.
+struct HighBox {
+    highest: f32,
+    number: u32,
+}
+
+impl Ord for HighBox {
+    /// The highest is the greatest; of equals the one that was found last, which is the smallest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.highest.total_cmp(&other.highest).then(self.number.cmp(&other.number))
+    }
 }
 
 /// Two boxes, of both solids.
 struct GapPair {
     low: f64,
-    number: usize,
-    boxes: [GapBox; 2],
+    number: u32,
+    boxes: [u32; 2],
 }
 
 impl Ord for GapPair {
@@ -51,54 +172,41 @@ impl Ord for GapPair {
     }
 }
 
-impl PartialOrd for GapPair {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
+/// What is ordered is ordered by `cmp` alone.
+macro_rules! ordered {
+    ($($name:ident)+) => { $(
+        impl PartialOrd for $name {
+            fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+                Some(self.cmp(other))
+            }
+        }
+
+        impl PartialEq for $name {
+            fn eq(&self, other: &Self) -> bool {
+                self.cmp(other) == Ordering::Equal
+            }
+        }
+
+        impl Eq for $name {}
+    )+ };
 }
 
-impl PartialEq for GapPair {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
+ordered! { HighBox GapPair }
 
-impl Eq for GapPair {}
+/// Two points inside, and how far apart they are.
+type Witness = (f64, [[f32; 3]; 2]);
 
 /// The distance between two solids in boxes around them; `None` if no point of one of them is found. Points
 /// count from the origin of the model.
 pub(super) fn gap(solids: [&Solid; 2], around: [Box3; 2], tolerance: f32) -> Result<Option<Gap>, EvalError> {
-    let whole = |place: usize| -> Result<GapBox, EvalError> {
-        let (bounds, solid): (Box3, &Solid) = (around[place], solids[place]);
-        Ok(GapBox { bounds, region: solid.pruner.region(bounds)?.into(), inside: None })
-    };
-    let mut open = BinaryHeap::from([GapPair { low: 0.0, number: 0, boxes: [whole(0)?, whole(1)?] }]);
-    let mut best: Option<(f64, [[f32; 3]; 2])> = None;
-    let (mut number, mut low) = (0, f64::INFINITY);
-    while let Some(pair) = open.pop() {
-        let high = best.map_or(f64::INFINITY, |(high, _)| high);
-        low = pair.low.min(high);
-        if high - low <= f64::from(tolerance) || number >= MAX_PAIRS {
-            break;
-        }
-        low = f64::INFINITY;
-        let side = usize::from(pair.boxes[1].bounds.longest_side() > pair.boxes[0].bounds.longest_side());
-        for part in parts(solids[side], &pair.boxes[side])? {
-            let mut boxes = pair.boxes.clone();
-            boxes[side] = part;
-            if let (Some(a), Some(b)) = (boxes[0].inside, boxes[1].inside) {
-                let apart = between(a, b);
-                if best.is_none_or(|(high, _)| apart < high) {
-                    best = Some((apart, [a, b]));
-                }
-            }
-            let low = least(&boxes[0].bounds, &boxes[1].bounds);
-            if best.is_none_or(|(high, _)| low < high) {
-                number += 1;
-                open.push(GapPair { low, number, boxes });
-            }
+    let mut trees = [GapTree::new(solids[0], around[0])?, GapTree::new(solids[1], around[1])?];
+    for tree in &mut trees {
+        if !tree.find()? {
+            return Ok(None);
         }
     }
+    let mut best: Option<Witness> = None;
+    let low = search(&mut trees, f64::from(tolerance), &mut best)?;
     Ok(best.map(|(high, points)| Gap {
         low: low.min(high),
         high,
@@ -106,28 +214,47 @@ pub(super) fn gap(solids: [&Solid; 2], around: [Box3; 2], tolerance: f32) -> Res
     }))
 }
 
-/// The parts of a box that may hold points of a solid.
-fn parts(solid: &Solid, whole: &GapBox) -> Result<Vec<GapBox>, EvalError> {
-    let parts = cut(&whole.bounds, halves(&whole.bounds));
-    let left: Vec<Box3> = parts
-        .iter()
-        .zip(ranges(solid, &whole.region, &parts)?)
-        .filter(|(_, range)| solid.side(*range) != Some(false))
-        .map(|(part, _)| *part)
-        .collect();
-    if left.is_empty() {
-        return Ok(Vec::new());
-    }
-    let mut regions = Vec::new();
-    solid.pruner.narrow(&whole.region, &left, &mut regions)?;
-    let mut batch = SolidBatch::default();
-    left.iter().for_each(|part| batch.push(center(part)));
-    let sides = batch.sides(solid, &whole.region)?;
-    let part = |((&bounds, region), inside): ((&Box3, Region), bool)| {
-        let inside = if inside { Some(center(&bounds)) } else { whole.inside };
-        GapBox { bounds, region: region.into(), inside }
+/// A bound of the distance from below; `best` are the nearest points that were met.
+fn search(
+    trees: &mut [GapTree<'_>; 2],
+    tolerance: f64,
+    best: &mut Option<Witness>,
+) -> Result<f64, EvalError> {
+    let mut open = BinaryHeap::new();
+    let mut count = 0;
+    let mut meet = |trees: &[GapTree<'_>; 2], boxes: [u32; 2], open: &mut BinaryHeap<GapPair>| {
+        let [a, b] = [0, 1].map(|side| &trees[side].boxes[boxes[side] as usize]);
+        if let (Some(a), Some(b)) = (a.inside, b.inside) {
+            let apart = between(a, b);
+            if best.is_none_or(|(high, _)| apart < high) {
+                *best = Some((apart, [a, b]));
+            }
+        }
+        let high = best.map_or(f64::INFINITY, |(high, _)| high);
+        let low = least(&a.bounds, &b.bounds);
+        if low < high {
+            count += 1;
+            open.push(GapPair { low, number: count, boxes });
+        }
+        (high, count)
     };
-    Ok(left.iter().zip(regions).zip(sides).map(part).collect())
+    let (mut high, mut pairs) = meet(trees, [0, 0], &mut open);
+    while let Some(GapPair { low, boxes, .. }) = open.pop() {
+        let work: u64 = trees.iter().map(|tree| tree.work).sum();
+        if high - low <= tolerance || pairs >= MAX_GAP_PAIRS || work >= MAX_GAP_WORK {
+            return Ok(low);
+        }
+        let side = |side: usize| trees[side].boxes[boxes[side] as usize].bounds.longest_side();
+        let longer = usize::from(side(1) > side(0));
+        let Some(parts) = trees[longer].parts(boxes[longer])? else { return Ok(low) };
+        for part in parts {
+            let mut boxes = boxes;
+            boxes[longer] = part;
+            (high, pairs) = meet(trees, boxes, &mut open);
+        }
+    }
+    // No pair is left that is nearer than the best one.
+    Ok(f64::INFINITY)
 }
 
 /// The distance of two points.

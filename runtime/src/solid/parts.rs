@@ -235,10 +235,12 @@ impl PartSolids {
     }
 
     /// The distance between two parts: how far apart their nearest points are, 0 where they have points in
-    /// common. `None` if one of them is empty.
+    /// common. `None` if one of them is empty, or so thin that no point of it is found.
     ///
-    /// The bracket is as narrow as the tolerance, unless the search gives up: parallel walls have so many
-    /// nearest points that it can be wider.
+    /// The bracket is as narrow as the tolerance, unless
+    /// [`MAX_GAP_PAIRS`](jbt_ir::limits::MAX_GAP_PAIRS) or [`MAX_GAP_WORK`](jbt_ir::limits::MAX_GAP_WORK) is
+    /// used up: parallel walls have so many nearest points that it can be wider. It holds all the same,
+    /// however many leaves the parts have.
     ///
     /// # Errors
     /// See [`PartError`].

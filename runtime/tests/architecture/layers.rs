@@ -23,6 +23,7 @@ const MODEL: &[&[&str]] = &[
         "label",
         "orientation",
         "power",
+        "precedence",
         "query",
         "report",
         "word",

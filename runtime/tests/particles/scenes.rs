@@ -35,6 +35,7 @@ pub fn model(tree: Tree) -> Model {
         name: name.into(),
         default: vec![0.25; width],
         mixing,
+        ..AttributeGroup::color()
     };
     let mut model = Model::new(tree);
     model.attributes.push(group("heat", 1, Mixing::Dominant));

@@ -118,6 +118,7 @@ impl Random {
                 name: ["rough", "scale"][index].into(),
                 default: (0..width).map(|_| self.between(-1.0, 1.0)).collect(),
                 mixing: if self.shape.bool() { Mixing::Blend } else { Mixing::Dominant },
+                ..AttributeGroup::color()
             });
         }
         if self.is_hostile() && self.shape.bool() {

@@ -11,6 +11,7 @@ use crate::mixing::{Operator, State, beyond};
 use crate::prune_info::{DecidedRows, DecisionKind};
 use crate::recipe::{Lead, Member, Owned, RowPlace, RowPlaces, RowStep};
 use crate::shape::{bounded, non_negative};
+use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::ReduceCode;
 
 impl Emitter<'_> {
@@ -26,7 +27,7 @@ impl Emitter<'_> {
             bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
             ranged: self.probes.is_some(),
-            moving: self.query.is_differentiated(),
+            moving: self.query.is_differentiated() || self.groups.iter().any(AttributeGroup::turns),
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);

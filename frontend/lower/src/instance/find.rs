@@ -169,7 +169,7 @@ impl<'a> Finder<'a> {
                     let stays =
                         |group: &usize| above[*group].is_some_and(|bound| self.scene.overrides(bound));
                     if let Some(group) = group.filter(|group| !stays(group)) {
-                        let placed = value.is_placed();
+                        let placed = value.is_placed() || groups[group].turns();
                         let place = || moved.unwrap_or_else(|| *self.scene.position(position));
                         let at = placed.then(place).map(|place| self.name_position(place));
                         if !std::mem::replace(&mut rebound, true) {

@@ -32,28 +32,6 @@ impl Tree {
         Self::new(written, vec![self.clone()])
     }
 
-    /// The same, but what the tree begins with, an attribute or a constant, counts for all leaves below,
-    /// whatever stands nearer to them. Of several that override, the one nearest to the root counts.
-    ///
-    /// ```
-    /// use jbt_model::builder::point;
-    /// use jbt_model::{model::Model, walk::walk};
-    /// let red = point([0; 3], 1).color([1, 0, 0]);
-    /// let of = |tree: jbt_model::tree::Tree| walk(&Model::new(tree).check().unwrap(), [0.0; 3]).attributes.concat();
-    /// assert_eq!(of(red.color([0, 0, 1])), [1.0, 0.0, 0.0]);
-    /// assert_eq!(of(red.color([0, 0, 1]).overriding()), [0.0, 0.0, 1.0]);
-    /// ```
-    ///
-    /// # Panics
-    /// If the tree begins with anything else.
-    #[must_use]
-    pub fn overriding(&self) -> Self {
-        let written = self.node().written();
-        let gives = matches!(written, Written::Attribute { .. } | Written::Constant { .. });
-        assert!(gives, "an attribute or a constant can override, and nothing else");
-        self.with_written(written.clone().overriding())
-    }
-
     /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in
     /// between. It lies in the space of this tree: maps of the whole move it, maps below do not.
     ///

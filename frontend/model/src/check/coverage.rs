@@ -83,7 +83,12 @@ impl CheckedTree {
         }
         let dependence = Arc::new(self.dependence.of(|id| Some(copies[id.0 as usize][0])));
         let mut tree = Self { dependence, origin: self.origin, ..self.of_nodes(nodes) };
-        tree.attributes.push(AttributeGroup { name, default: vec![0.0], mixing: Mixing::Blend });
+        tree.attributes.push(AttributeGroup {
+            name,
+            default: vec![0.0],
+            mixing: Mixing::Blend,
+            ..AttributeGroup::color()
+        });
         Ok(tree)
     }
 }

@@ -49,6 +49,10 @@ pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
                 )
             });
         }
+        if group.turns() && width != 3 {
+            let message = format!("the direction `{name}` has {width} reals, and a direction has 3");
+            report.add(|| Diagnostic::error(None, message));
+        }
         let what = format!("the default of `{name}`");
         check_numbers(report, None, &what, &group.default, f64::NEG_INFINITY);
     }

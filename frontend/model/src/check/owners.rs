@@ -93,6 +93,7 @@ impl CheckedTree {
             name,
             default: vec![default; width],
             mixing: Mixing::Dominant,
+            ..AttributeGroup::color()
         });
         Ok(tree)
     }

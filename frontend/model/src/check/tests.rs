@@ -50,7 +50,12 @@ fn attribute(name: &str, values: &[f64], child: Tree) -> Tree {
 }
 
 fn group(name: &str, width: usize) -> AttributeGroup {
-    AttributeGroup { name: name.into(), default: vec![0.0; width], mixing: Mixing::Blend }
+    AttributeGroup {
+        name: name.into(),
+        default: vec![0.0; width],
+        mixing: Mixing::Blend,
+        ..AttributeGroup::color()
+    }
 }
 
 /// The messages of a model over `root`.

@@ -80,6 +80,8 @@ fn is_same(a: &Tree, b: &Tree) -> bool {
         && a.children().iter().zip(b.children()).all(|(a, b)| a.identity() == b.identity())
         && a.name() == b.name()
         && a.label().is_some_and(|label| label.part) == b.label().is_some_and(|label| label.part)
+        && a.label().and_then(|label| label.style.as_ref())
+            == b.label().and_then(|label| label.style.as_ref())
         && a.written() == b.written()
         && a.written().numbers().zip(b.written().numbers()).all(same_bits)
         && match (a.written(), b.written()) {

@@ -10,6 +10,7 @@ use super::known::{BodyKind, CallFrame, CallKey, Remembered, Value};
 use crate::block::Begun;
 use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
+use crate::words::NAMES_FIRST;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::label::LabelCall;
 use jbt_model::number::{Number, Step};
@@ -68,7 +69,9 @@ impl<'a> Parser<'a> {
             let word = self.peek_word();
             match word {
                 // The name of a node, by itself.
-                Some(word) if self.is_tree(word) && !self.begins_node(word) => {
+                Some(word)
+                    if self.is_tree(word) && (!self.begins_node(word) || NAMES_FIRST.contains(&word)) =>
+                {
                     frame.give(Value::Tree(self.use_node()));
                 }
                 Some(_) => return Next::Node,

@@ -12,6 +12,7 @@ use crate::words::is_builtin;
 use crate::words::is_reserved;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::clip;
+use jbt_model::word::STYLE;
 
 /// The words of its statements.
 const DEFINE: &str = "def";
@@ -25,16 +26,18 @@ impl<'a> Parser<'a> {
         match word {
             DEFINE => next == TokenKind::Word && self.group(word).is_none(),
             INCLUDE => next == TokenKind::Quoted && self.group(word).is_none(),
-            _ => false,
+            _ => self.begins_style(word),
         }
     }
 
     /// A statement whose word has just been taken.
     pub(crate) fn definition_statement(&mut self, word: &str, token: Token) {
-        if word == INCLUDE {
-            self.include(token);
-        } else {
-            self.define_statement();
+        match word {
+            INCLUDE => {
+                self.include(token);
+            }
+            STYLE => self.style_statement(),
+            _ => self.define_statement(),
         }
     }
 

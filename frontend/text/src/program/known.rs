@@ -15,6 +15,7 @@ use jbt_model::diagnostic::Span;
 use jbt_model::label::LabelCall;
 use jbt_model::number::Number;
 use jbt_model::tree::Tree;
+use jbt_model::written::Written;
 
 /// The word for the number of a list's elements.
 pub(crate) const COUNT: &str = "count";
@@ -64,6 +65,8 @@ pub(crate) struct TextProgram<'a> {
     /// Those that are being read, each in the one before it: identities and paths.
     pub(super) open: Vec<(String, String)>,
     pub(super) definitions: HashMap<&'a str, Rc<ProgramDefinition<'a>>>,
+    /// Styles; nothing for those with errors.
+    pub(super) styles: HashMap<&'a str, Option<Rc<TextStyle>>>,
     /// What has been expanded for which arguments.
     pub(super) remembered: HashMap<CallKey, Remembered>,
     /// Values that have a name everywhere below.
@@ -92,6 +95,7 @@ impl<'a> TextProgram<'a> {
             included: HashMap::new(),
             open: Vec::new(),
             definitions: HashMap::new(),
+            styles: HashMap::new(),
             remembered: HashMap::new(),
             values: HashMap::new(),
             locals: Vec::new(),
@@ -154,6 +158,15 @@ pub(crate) struct ProgramDefinition<'a> {
     pub(super) length: usize,
     /// There are errors in its body, which are told once.
     pub(super) is_wrong: Cell<bool>,
+}
+
+/// A style: what a use of it is expanded to.
+pub(crate) struct TextStyle {
+    pub(super) name: Arc<str>,
+    /// Its attributes and constants with their places, the outermost first.
+    pub(super) values: Vec<(Written, Span)>,
+    /// The bytes of its braces.
+    pub(super) length: usize,
 }
 
 /// A file that has been read.

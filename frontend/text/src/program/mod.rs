@@ -27,6 +27,7 @@ mod definition;
 mod include;
 pub(super) mod known;
 mod repeat;
+mod style;
 mod value;
 
 impl<'a> Parser<'a> {

@@ -13,7 +13,7 @@ use crate::expression::{ExpressionPlace, ParsedOperand};
 use crate::lex::{Token, TokenKind};
 use crate::state::Parser;
 use crate::value::Elements;
-use crate::words::constant;
+use crate::words::{NAMES_FIRST, constant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::function::Function;
 use jbt_model::number::Number;
@@ -38,7 +38,9 @@ impl<'a> Parser<'a> {
                     return true;
                 }
                 let bound = self.program.value(word).is_some() || self.parameter(word).is_some();
-                !self.begins_node(word) && (bound || constant(word).is_some())
+                // What has such a name had it before these words began nodes.
+                let is_node = self.begins_node(word) && !(bound && NAMES_FIRST.contains(&word));
+                !is_node && (bound || constant(word).is_some())
             }
             TokenKind::Unknown | TokenKind::End => false,
         }

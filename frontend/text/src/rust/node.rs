@@ -203,7 +203,7 @@ impl RustBody {
 }
 
 /// What stands behind an attribute or a constant that overrides.
-const fn overriding(precedence: Precedence) -> &'static str {
+pub(super) const fn overriding(precedence: Precedence) -> &'static str {
     match precedence {
         Precedence::Nearest => "",
         Precedence::Override => ".overriding()",

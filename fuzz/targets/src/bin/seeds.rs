@@ -19,7 +19,7 @@ const MAX_BYTES: u64 = 16 << 10;
 /// Seeds of one target, at most.
 const MAX_SEEDS: usize = 600;
 /// Words of one target, at most.
-const MAX_WORDS: usize = 500;
+const MAX_WORDS: usize = 800;
 /// Folders of the project where there are seeds.
 const FOLDERS: [&str; 9] = [
     "examples",
@@ -56,9 +56,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut files = BTreeSet::new();
     roots.iter().for_each(|root| list(root, &mut files));
     let mut seeds: BTreeMap<String, Vec<Vec<u8>>> = BTreeMap::new();
+    let mut page_words = BTreeSet::new();
     for path in files {
         let bytes = fs::read(&path)?;
         for (target, input) in seeds_of(&path, &bytes) {
+            if is_page(&path) {
+                page_words.extend(words_of(&String::from_utf8_lossy(input)).map(str::to_owned));
+            }
             let own = seeds.entry(target).or_default();
             if own.len() < MAX_SEEDS && !own.iter().any(|known| known == input) {
                 own.push(input.to_vec());
@@ -78,25 +82,30 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (number, bytes) in own.iter().enumerate() {
             fs::write(inputs.join(format!("seed-{number:03}")), bytes)?;
         }
-        fs::write(folder.join(format!("{}.dict", target.name)), words(&own))?;
+        fs::write(folder.join(format!("{}.dict", target.name)), words(&own, &page_words))?;
         println!("{}: {} seeds", target.name, own.len());
     }
     Ok(())
 }
 
-/// Files that are short enough, in all folders below.
+/// Files that are short enough, in all folders below; of pages, scenes are.
 fn list(folder: &Path, files: &mut BTreeSet<PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.is_dir() {
             list(&path, files);
-        } else if entry.metadata().is_ok_and(|data| data.len() <= MAX_BYTES) {
+        } else if is_page(&path) || entry.metadata().is_ok_and(|data| data.len() <= MAX_BYTES) {
             files.insert(path);
         }
     }
 }
 
-/// The targets that a file is a seed of, each with the part of the file that is one.
+/// Whether it is a page, which has scenes between its prose.
+fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "md")
+}
+
+/// The targets that a file is a seed of, each with the part of the file that is one. A page has several.
 fn seeds_of<'a>(path: &Path, bytes: &'a [u8]) -> Vec<(String, &'a [u8])> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let name = path.to_string_lossy();
@@ -109,6 +118,12 @@ fn seeds_of<'a>(path: &Path, bytes: &'a [u8]) -> Vec<(String, &'a [u8])> {
         let input = bytes.windows(6).position(|part| part == b"\n----\n").unwrap_or(bytes.len());
         let is_function = bytes[..input].windows(9).any(|part| part == b"function ");
         return if is_function { vec![("function".to_owned(), &bytes[..input])] } else { Vec::new() };
+    }
+    if is_page(path) {
+        let page = std::str::from_utf8(bytes).unwrap_or_default();
+        let scenes = page.split("```jbt\n").skip(1).filter_map(|rest| rest.split_once("```"));
+        let scene = Path::new("scene.jbt");
+        return scenes.flat_map(|(scene_text, _)| seeds_of(scene, scene_text.as_bytes())).collect();
     }
     let formats = SceneFormat::ALL.into_iter().filter(|format| format.extensions().contains(&ending));
     let mut found: Vec<String> = formats.map(|format| format!("read-{}", format_word(format))).collect();
@@ -127,19 +142,22 @@ fn random(seed: u64) -> Vec<u8> {
     (0..18).map(|_| rng.u8(..)).collect()
 }
 
-/// The words that two seeds or more have, the frequent ones first, as libFuzzer reads them.
-fn words(seeds: &[Vec<u8>]) -> String {
+/// The words of a text.
+fn words_of(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|letter: char| !letter.is_ascii_alphanumeric() && !"_#$".contains(letter))
+        .filter(|word| (2..25).contains(&word.len()) && !word.starts_with(|c: char| c.is_ascii_digit()))
+}
+
+/// The words that two seeds or more have, or one of a page: the frequent ones first, as libFuzzer reads them.
+fn words(seeds: &[Vec<u8>], page_words: &BTreeSet<String>) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for seed in seeds {
         let text = String::from_utf8_lossy(seed);
-        let words: BTreeSet<&str> = text
-            .split(|letter: char| !letter.is_ascii_alphanumeric() && !"_#$".contains(letter))
-            .filter(|word| (2..25).contains(&word.len()) && !word.starts_with(|c: char| c.is_ascii_digit()))
-            .collect();
+        let words: BTreeSet<&str> = words_of(&text).collect();
         words.into_iter().for_each(|word| *counts.entry(word.to_owned()).or_default() += 1);
     }
     let mut all: Vec<(usize, String)> = counts.into_iter().map(|(word, count)| (count, word)).collect();
-    all.retain(|(count, _)| *count >= 2 || seeds.len() < 4);
+    all.retain(|(count, word)| *count >= 2 || seeds.len() < 4 || page_words.contains(word));
     all.sort_by(|a, b| b.cmp(a));
     let numbers = NUMBERS.iter().map(|number| (*number).to_owned());
     let lines = numbers.chain(all.into_iter().take(MAX_WORDS).map(|(_, word)| word));

@@ -223,6 +223,18 @@ impl<D: Domain> Domain for Interval<D> {
         a
     }
 
+    fn slope_x(&mut self, _: Range<D>) -> Range<D> {
+        self.constant(0.0)
+    }
+
+    fn slope_y(&mut self, _: Range<D>) -> Range<D> {
+        self.constant(0.0)
+    }
+
+    fn slope_z(&mut self, _: Range<D>) -> Range<D> {
+        self.constant(0.0)
+    }
+
     fn low_end(&mut self, a: Range<D>) -> Range<D> {
         self.lowest(a)
     }

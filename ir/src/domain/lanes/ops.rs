@@ -350,6 +350,21 @@ impl Domain for Lanes<'_> {
     }
 
     #[inline(always)]
+    fn slope_x(&mut self, _: Handle) -> Handle {
+        self.constant(0.0)
+    }
+
+    #[inline(always)]
+    fn slope_y(&mut self, _: Handle) -> Handle {
+        self.constant(0.0)
+    }
+
+    #[inline(always)]
+    fn slope_z(&mut self, _: Handle) -> Handle {
+        self.constant(0.0)
+    }
+
+    #[inline(always)]
     fn low_end(&mut self, a: Handle) -> Handle {
         self.unary(a, |a| a)
     }

@@ -116,6 +116,12 @@ impl Tangent {
         result
     }
 
+    /// A component of a tangent, as a value that has none.
+    fn slope_along(&mut self, a: Dual, axis: usize) -> Dual {
+        let components = self.derivative(|d| d.components(a.slope));
+        Self::still(components[axis].unwrap_or_else(|| self.builder.constant(0.0)))
+    }
+
     fn with_slope(&mut self, value: Value, slope: impl FnOnce(&mut Self) -> Slope) -> Dual {
         let slope = self.derivative(slope);
         Dual { value, slope }
@@ -338,6 +344,18 @@ impl Domain for Tangent {
             }
             slope
         })
+    }
+
+    fn slope_x(&mut self, a: Dual) -> Dual {
+        self.slope_along(a, 0)
+    }
+
+    fn slope_y(&mut self, a: Dual) -> Dual {
+        self.slope_along(a, 1)
+    }
+
+    fn slope_z(&mut self, a: Dual) -> Dual {
+        self.slope_along(a, 2)
     }
 
     fn stop_gradient(&mut self, a: Dual) -> Dual {

@@ -73,6 +73,7 @@ impl Cloud {
                 name: name.as_str().into(),
                 default: vec![0.0; width],
                 mixing: Mixing::Blend,
+                ..AttributeGroup::color()
             });
             particles = particles.with_values(ParticleValues { name: name.into(), width, numbers });
         }

@@ -33,6 +33,7 @@ impl TreeReader<'_> {
             name: (*name).into(),
             default: vec![0.0],
             mixing: Mixing::Blend,
+            ..AttributeGroup::color()
         });
         std::iter::once(AttributeGroup::color()).chain(groups).collect()
     }
