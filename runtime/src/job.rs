@@ -73,7 +73,8 @@ impl<'a, T, E> Job<'a, T, E> {
     /// Does the work.
     ///
     /// # Errors
-    /// Those of the work, and its `Cancelled`.
+    /// Those of the work. Of one that a token has stopped the [kind](crate::Classified::kind) is
+    /// [`Cancelled`](crate::ErrorKind::Cancelled).
     pub fn run(self) -> Result<T, E> {
         let Self { work, mut watchers, tokens } = self;
         let goes_on = move || !tokens.iter().any(CancelToken::is_cancelled);
@@ -108,8 +109,11 @@ impl CancelToken {
         self.0.store(true, Ordering::Release);
     }
 
-    /// Does work that is no job: whatever it compiles stops within some hundredths of a second, with
-    /// [`CompileError::Cancelled`](crate::CompileError::Cancelled), once the token is cancelled.
+    /// Does work that is no job, or has jobs in it: whatever it compiles or evaluates stops within some
+    /// hundredths of a second once the token is cancelled, with
+    /// [`CompileError::Cancelled`](crate::CompileError::Cancelled),
+    /// [`EvalError::Cancelled`](crate::EvalError::Cancelled) or the like:
+    /// [`ErrorKind::Cancelled`](crate::ErrorKind::Cancelled).
     pub fn watches<T>(&self, work: impl FnOnce() -> T) -> T {
         let token = self.clone();
         watch::offer(Arc::new(move || !token.is_cancelled()), work)

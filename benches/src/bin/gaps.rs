@@ -7,9 +7,9 @@
 //!
 //! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those
 //! of the processor that the one thread that works took, so that other work on the machine does not count;
-//! Linux alone tells them. Compiling is asked by its watch, every 5 ms at most; other work by its hook of
-//! progress. Only scenes whose name has PART are looked at. What a gap of more than 50 ms is about stands
-//! behind a `!`.
+//! Linux alone tells them, in steps of some milliseconds. A look is a question to the watch that is offered
+//! around the work, or a call of the hook of progress, behind which tokens are asked. Only scenes whose name
+//! has PART are looked at. What a gap of more than 50 ms is about stands behind a `!`.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fs;
@@ -56,22 +56,21 @@ impl Gaps {
     }
 }
 
-/// The longest gap of work that is given what hears of progress.
+/// The longest gap of work, which is given what hears of progress.
 fn of_job(work: impl FnOnce(Gaps)) -> Duration {
     let gaps = Gaps::new();
-    work(gaps.clone());
+    let (told, asked) = (gaps.clone(), gaps.clone());
+    let asked = move || {
+        asked.look();
+        true
+    };
+    watch::offer(Arc::new(asked), || work(told));
     gaps.longest()
 }
 
-/// The longest gap of work that compiles.
+/// The longest gap of work that is no job.
 fn of_compiling(work: impl FnOnce()) -> Duration {
-    of_job(|gaps| {
-        let asked = move || {
-            gaps.look();
-            true
-        };
-        watch::offer(Arc::new(asked), work);
-    })
+    of_job(|_| work())
 }
 
 /// The gaps of all tasks.

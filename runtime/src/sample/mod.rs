@@ -237,8 +237,10 @@ impl Sampler {
                 progress.add(share)?;
                 Ok::<_, SampleError>(block)
             };
-            let blocks = some.par_iter().map_init(usize::default, sample);
-            let blocks: Vec<Block> = blocks.collect::<Result<_, _>>()?;
+            let blocks: Vec<Block> = scatter(|watches| {
+                let sample = |at_once: &mut usize, some: &_| watches.hold(|| sample(at_once, some));
+                some.par_iter().map_init(usize::default, sample).collect::<Result<_, _>>()
+            })?;
             blocks.into_iter().for_each(&mut *take);
         }
         Ok(progress.finish()?)

@@ -229,13 +229,13 @@ impl Solid {
         let normals = self.normals()?;
         let leaves: Vec<(&DivisionNode<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
-        let pieces: Vec<MeasurePiece> = leaves
-            .par_iter()
-            .map(|(node, region)| {
-                progress.add(share)?;
-                self.piece(normals, &node.bounds, region).map_err(MeasureError::Eval)
-            })
-            .collect::<Result<_, _>>()?;
+        let piece = |(node, region): &(&DivisionNode<()>, &Region)| {
+            progress.add(share)?;
+            self.piece(normals, &node.bounds, region).map_err(MeasureError::Eval)
+        };
+        let pieces: Vec<MeasurePiece> = scatter(|watches| {
+            leaves.par_iter().map(|leaf| watches.hold(|| piece(leaf))).collect::<Result<_, _>>()
+        })?;
         let empty = Measures { region: bounds, cell, ..Measures::default() };
         Ok(self.sum(empty, &division, &pieces))
     }
