@@ -13,6 +13,7 @@
 
 use crate::entity::{Entity, Value};
 use crate::function::InstKind;
+use crate::watch::look;
 
 /// What makes two instructions the same: what they are, and up to three numbers of theirs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -100,6 +101,7 @@ impl KnownInsts {
         }
         let before = std::mem::replace(&mut self.places, vec![0; wanted]);
         for place in before.into_iter().filter(|&place| place != 0) {
+            look();
             if let Some(key) = key_of(value_at(place)) {
                 let KnownPlace(free) = self.place(key, |_| false);
                 self.places[free] = place;
