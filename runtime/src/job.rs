@@ -9,6 +9,13 @@ use jbt_ir::watch;
 /// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
 pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
 
+/// The error of a job. Work may be stopped while it compiles, evaluates or does something else: whoever ran
+/// the job gets one answer.
+pub(crate) trait JobError: Sized {
+    /// The error; its `Cancelled` in place of whatever else says that a token has stopped the work.
+    fn told(self) -> Self;
+}
+
 /// Work that tells a hook how far it is.
 type Work<'a, T, E> = dyn FnOnce(Hook<'_>) -> Result<T, E> + 'a;
 
@@ -52,7 +59,11 @@ pub struct Job<'a, T, E> {
 
 impl<'a, T, E> Job<'a, T, E> {
     /// Work that tells a hook how far it is, and stops soon with an error of its own once that returns false.
-    pub(crate) fn new(work: impl FnOnce(Hook<'_>) -> Result<T, E> + 'a) -> Self {
+    pub(crate) fn new(work: impl FnOnce(Hook<'_>) -> Result<T, E> + 'a) -> Self
+    where
+        E: JobError,
+    {
+        let work = move |hook: Hook<'_>| work(hook).map_err(E::told);
         Self { work: Box::new(work), watchers: Vec::new(), tokens: Vec::new() }
     }
 
@@ -73,8 +84,7 @@ impl<'a, T, E> Job<'a, T, E> {
     /// Does the work.
     ///
     /// # Errors
-    /// Those of the work. Of one that a token has stopped the [kind](crate::Classified::kind) is
-    /// [`Cancelled`](crate::ErrorKind::Cancelled).
+    /// Those of the work, and its `Cancelled`.
     pub fn run(self) -> Result<T, E> {
         let Self { work, mut watchers, tokens } = self;
         let goes_on = move || !tokens.iter().any(CancelToken::is_cancelled);

@@ -24,7 +24,7 @@ pub use crate::counter::walks;
 use crate::debug::brief_debug;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::mesh::{Lattice, LatticeError};
 
 /// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by
@@ -183,6 +183,12 @@ pub enum SupportsError {
     /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl JobError for SupportsError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
 }
 
 impl Classified for SupportsError {

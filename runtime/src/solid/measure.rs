@@ -25,7 +25,7 @@ use crate::boxes::Box3;
 use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::polygonize::Fineness;
 use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
@@ -155,6 +155,12 @@ pub enum MeasureError {
     /// It was told to stop.
     #[error("measuring was cancelled")]
     Cancelled,
+}
+
+impl JobError for MeasureError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
 }
 
 impl Classified for MeasureError {
