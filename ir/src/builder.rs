@@ -27,7 +27,7 @@ mod known;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::entity::{Block, Entity, Inst, Table, Value, Values};
+use crate::entity::{Block, Entity, Inst, Results, Table, Value, Values};
 use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 use crate::limits::MAX_VALUES;
 use crate::op::{Domain, Op, Type};
@@ -40,7 +40,7 @@ use known::{Key, KnownInsts};
 #[derive(Clone, Copy)]
 struct KnownValue {
     /// How many blocks enclose its definition: 0 is the function's body.
-    depth: u32,
+    depth: u16,
     /// The block that it is defined in: it is seen while that is open.
     block: Block,
     /// The instruction that defines it; accumulators have none.
@@ -265,7 +265,7 @@ impl FunctionBuilder {
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
         self.function.blocks[open.block].results = next.into();
         let fold = Fold { table, kind, rule, initial, body: open.block };
-        self.append(depth, InstKind::Fold(fold), results.as_slice().into());
+        self.append(depth, InstKind::Fold(Box::new(fold)), results.as_slice().into());
         results
     }
 
@@ -281,13 +281,20 @@ impl FunctionBuilder {
 
     fn new_value(&mut self, type_: Type, depth: usize) -> Value {
         let block = self.open[depth].block;
-        self.values.push(KnownValue { depth: depth as u32, block, definition: None, uniform: false });
+        // Nobody verifies a function with more than `MAX_FOLD_DEPTH` folds in each other.
+        let known = KnownValue {
+            depth: u16::try_from(depth).unwrap_or(u16::MAX),
+            block,
+            definition: None,
+            uniform: false,
+        };
+        self.values.push(known);
         let value = self.function.values.push(type_);
         self.stand_ins[type_ as usize].get_or_insert(value);
         value
     }
 
-    fn append(&mut self, depth: usize, kind: InstKind, results: Values) -> Inst {
+    fn append(&mut self, depth: usize, kind: InstKind, results: Results) -> Inst {
         let definition = self.function.insts.next_key();
         for result in &results {
             self.values[result.index()].definition = Some(definition);
@@ -306,7 +313,7 @@ impl FunctionBuilder {
         let depth = depth.min(self.open.len() - 1);
         if !self.shares {
             let value = self.new_value(type_, depth);
-            self.append(self.open.len() - 1, kind, Values::from_slice(&[value]));
+            self.append(self.open.len() - 1, kind, Results::from_slice(&[value]));
             return value;
         }
         let key = Key::new(&kind).expect("folds are written by `end_fold`");
@@ -323,7 +330,7 @@ impl FunctionBuilder {
             InstKind::Op { args, .. } => args.iter().all(|&arg| self.is_uniform(arg)),
             InstKind::Input(_) | InstKind::Fold(_) => false,
         };
-        self.append(depth, kind, Values::from_slice(&[value]));
+        self.append(depth, kind, Results::from_slice(&[value]));
         self.known.set(place, value);
         value
     }

@@ -68,6 +68,9 @@ entity!(
 /// A short list of values: operands, results, accumulators. Up to four of them take no allocation.
 pub type Values = SmallVec<[Value; 4]>;
 
+/// What an instruction defines: one value, but for folds.
+pub type Results = SmallVec<[Value; 2]>;
+
 /// A growing array indexed by an entity.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Store<K, V> {

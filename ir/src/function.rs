@@ -25,7 +25,7 @@
 
 use std::sync::Arc;
 
-use crate::entity::{Block, Entity, Inst, Store, Table, Value, Values};
+use crate::entity::{Block, Entity, Inst, Results, Store, Table, Value, Values};
 use crate::op::{Op, Type};
 use crate::origin::Origin;
 
@@ -143,8 +143,8 @@ pub enum InstKind {
         /// Its operands.
         args: Values,
     },
-    /// The loop over a table.
-    Fold(Fold),
+    /// The loop over a table. There are few of them, and there may be a million instructions.
+    Fold(Box<Fold>),
 }
 
 impl InstKind {
@@ -175,7 +175,7 @@ pub struct InstData {
     /// What it does.
     pub kind: InstKind,
     /// What it defines: one value, or the final accumulators of a fold.
-    pub results: Values,
+    pub results: Results,
     /// Where it comes from.
     pub origin: Origin,
 }

@@ -32,7 +32,7 @@ pub mod watch;
 
 pub use alone::RowFunction;
 pub use builder::FunctionBuilder;
-pub use entity::{Block, Entity, Inst, Store, Table, Value, Values};
+pub use entity::{Block, Entity, Inst, Results, Store, Table, Value, Values};
 pub use function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 pub use level::Level;
 pub use op::{Any, Domain, Op, Type, apply};

@@ -6,6 +6,7 @@
 //!   stoppable(work)      Err(Stopped) if a look was told to stop; work is half done then, and thrown away
 //!     look()             in inner loops: costs a decrement, and asks the watch every few milliseconds
 //!     Watches::present().hold(task)   a part of the work that another thread does
+//!   go_on()?             outside of compiling: an error, for whoever has errors to answer
 //! ```
 //!
 //! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
@@ -56,9 +57,38 @@ fn with<T>(place: &'static WatchPlace, watch: Option<Watch>, work: impl FnOnce()
     work()
 }
 
-/// Does work whose [`stoppable`] parts are stopped by a watch.
+/// Does work that may be stopped by a watch, and by one that was offered around it.
 pub fn offer<T>(watch: Watch, work: impl FnOnce() -> T) -> T {
-    with(&OFFERED, Some(watch), work)
+    let both: Watch = match OFFERED.with_borrow(Clone::clone) {
+        Some(around) => Arc::new(move || around() && watch()),
+        None => watch,
+    };
+    with(&OFFERED, Some(both), work)
+}
+
+/// Whether the work is still wanted: the watch that was offered is asked, every few milliseconds. Cheap
+/// beside a microsecond of work.
+///
+/// # Errors
+/// It is not. Nothing is unwound: the caller answers an error of its own.
+pub fn go_on() -> Result<(), Stopped> {
+    if OFFERED.with_borrow(Option::is_none) || !is_due() {
+        return Ok(());
+    }
+    match OFFERED.with_borrow(Clone::clone) {
+        Some(watch) if !watch() => Err(Stopped),
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// Whether no watch has been asked on this thread for a while. The caller asks one.
+fn is_due() -> bool {
+    let now = Instant::now();
+    let is_due = LAST.get().is_none_or(|last| now.duration_since(last) >= ASKED);
+    if is_due {
+        LAST.set(Some(now));
+    }
+    is_due
 }
 
 /// What a thread may be stopped by: for a part of its work that another thread does, or while it waits.
@@ -85,8 +115,8 @@ impl Watches {
     }
 
     /// Does work under them and no others.
-    pub fn hold<T>(self, work: impl FnOnce() -> T) -> T {
-        with(&OFFERED, self.offered, || with(&ACTIVE, self.active, work))
+    pub fn hold<T>(&self, work: impl FnOnce() -> T) -> T {
+        with(&OFFERED, self.offered.clone(), || with(&ACTIVE, self.active.clone(), work))
     }
 }
 
@@ -122,12 +152,7 @@ fn look_closely() {
         return;
     }
     let Some(watch) = ACTIVE.with_borrow(Clone::clone) else { return };
-    let now = Instant::now();
-    if LAST.get().is_some_and(|last| now.duration_since(last) < ASKED) {
-        return;
-    }
-    LAST.set(Some(now));
-    if !watch() {
+    if is_due() && !watch() {
         resume_unwind(Box::new(Stopped));
     }
 }
@@ -175,6 +200,19 @@ mod tests {
         assert_eq!(asked.load(Ordering::Relaxed), 4);
         assert!(ACTIVE.with_borrow(Option::is_none), "the watch is gone");
         (0..1000).for_each(|_| look());
+    }
+
+    #[test]
+    fn work_goes_on_as_long_as_all_watches_around_it_say_so() {
+        assert_eq!(go_on(), Ok(()), "nobody watches");
+        let count = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&count);
+        let outer: Watch = Arc::new(move || counted.fetch_add(1, Ordering::Relaxed) < 3);
+        offer(outer, || {
+            offer(Arc::new(|| true), || while go_on().is_ok() {});
+            assert_eq!(count.load(Ordering::Relaxed), 4, "it was asked every few milliseconds");
+            Watches::NONE.hold(|| (0..1000).for_each(|_| assert_eq!(go_on(), Ok(()))));
+        });
     }
 
     #[test]

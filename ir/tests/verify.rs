@@ -12,9 +12,10 @@ use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::text::annotated;
 use jbt_ir::{
     Block, BlockData, Domain as _, Entity, Fold, FoldKind, Function, FunctionBuilder, Inst, InstData,
-    InstKind, Op, Origin, Place, Rule, Schema, Table, Type, Value, Values, VerifyError, interpret, parse,
-    verify,
+    InstKind, Op, Origin, Place, Results, Rule, Schema, Table, Type, Value, Values, VerifyError, interpret,
+    parse, verify,
 };
+use smallvec::SmallVec;
 
 /// `f(x) = x + x`, with one instruction for each.
 fn double() -> Function {
@@ -85,7 +86,7 @@ fn add_constant(function: &mut Function) {
     let value = function.values.push(Type::Real);
     let data = InstData {
         kind: InstKind::Constant(1.0),
-        results: Values::from_slice(&[value]),
+        results: Results::from_slice(&[value]),
         origin: Origin::SHARED,
     };
     let inst = function.insts.push(data);
@@ -150,7 +151,11 @@ fn nested(depth: usize) -> Function {
         let table = add_table(&mut function);
         let body = function.blocks.push(BlockData::default());
         let fold = Fold { table, kind: FoldKind::Guard, rule: Rule::Neutral, initial: Values::new(), body };
-        let data = InstData { kind: InstKind::Fold(fold), results: Values::new(), origin: Origin::SHARED };
+        let data = InstData {
+            kind: InstKind::Fold(Box::new(fold)),
+            results: Results::new(),
+            origin: Origin::SHARED,
+        };
         let inst = function.insts.push(data);
         function.blocks[block].insts.push(inst);
         block = body;
@@ -177,7 +182,10 @@ fn any<E: Entity>(rng: &mut Rng, count: usize) -> E {
 }
 
 /// Changes an element of a list of values, or its length.
-fn damage_list(rng: &mut Rng, list: &mut Values, values: usize) {
+fn damage_list<const N: usize>(rng: &mut Rng, list: &mut SmallVec<[Value; N]>, values: usize)
+where
+    [Value; N]: smallvec::Array<Item = Value>,
+{
     let at = rng.usize(0..=list.len());
     match rng.u32(0..4) {
         0 => list.insert(at, any(rng, values)),

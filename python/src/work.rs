@@ -161,7 +161,8 @@ impl<'py> CallEffort<'py> {
             Arc::new(Arrival { result: Mutex::new(None), bell: Condvar::new() });
         let (mine, watched) = (Arc::clone(&arrival), watch.clone());
         pool(self.py, self.threads)?.spawn(move || {
-            mine.put(catch_unwind(AssertUnwindSafe(|| work(&watched))));
+            let stoppable = || watched.token.watches(|| work(&watched));
+            mine.put(catch_unwind(AssertUnwindSafe(stoppable)));
         });
         let mut told = -1.0;
         let mut stopped: Option<(PyErr, u32)> = None;

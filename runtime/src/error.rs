@@ -134,13 +134,23 @@ pub enum EvalError {
     /// The buffer was made for another query or model.
     #[error("the samples were made for another query or model")]
     Layout,
+    /// A token of the caller's stopped it. Some of the answers may be written.
+    #[error("evaluating was cancelled")]
+    Cancelled,
 }
 
 impl Classified for EvalError {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Length { .. } | Self::Planes { .. } | Self::Selection | Self::Layout => ErrorKind::Argument,
+            Self::Cancelled => ErrorKind::Cancelled,
         }
+    }
+}
+
+impl From<Stopped> for EvalError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
     }
 }
 

@@ -249,9 +249,11 @@ impl Evaluator {
                 (start, points, rest.iter_mut().map(|plane| split(plane, points)).collect())
             })
             .collect();
-        parts
-            .into_par_iter()
-            .try_for_each(|(start, count, answers)| self.eval_part(points, start, count, answers))
+        scatter(|watches| {
+            parts.into_par_iter().try_for_each(|(start, count, answers)| {
+                watches.hold(|| self.eval_part(points, start, count, answers))
+            })
+        })
     }
 
     /// Room for the answers at so many points.

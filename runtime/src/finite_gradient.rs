@@ -17,9 +17,9 @@
 
 use std::sync::Arc;
 
-use jbt_ir::Selection;
 use jbt_ir::domain::tangent::LARGEST_SLOPE;
 use jbt_ir::pass::GRADIENT_OUTPUTS;
+use jbt_ir::{Selection, watch};
 
 use crate::error::EvalError;
 use crate::kernel::BoundKernel;
@@ -50,7 +50,7 @@ impl BoundKernel {
         }
         let wild = |&index: &usize| gradient.iter().any(|plane| !are_tame(&plane[index..=index]));
         let wild: Vec<usize> = (0..points[0].len()).filter(wild).collect();
-        let Some(guarded) = self.guarded() else {
+        let Some(guarded) = self.guarded()? else {
             for plane in gradient {
                 wild.iter().for_each(|&index| plane[index] = saturated(plane[index]));
             }
@@ -71,9 +71,13 @@ impl BoundKernel {
     }
 
     /// The guarded kernel with these numbers.
-    fn guarded(&self) -> Option<&Self> {
+    fn guarded(&self) -> Result<Option<&Self>, EvalError> {
         let bind = || self.kernel.guarded().map(|kernel| Box::new(kernel.bind(Arc::clone(&self.lowered))));
-        self.guarded.get_or_init(bind).as_deref()
+        let made = match self.guarded.get() {
+            Some(made) => made,
+            None => watch::stoppable(|| self.guarded.get_or_init(bind))?,
+        };
+        Ok(made.as_deref())
     }
 }
 

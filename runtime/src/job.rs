@@ -9,6 +9,13 @@ use jbt_ir::watch;
 /// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
 pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
 
+/// The error of a job. Work may be stopped while it compiles, evaluates or does something else: whoever ran
+/// the job gets one answer.
+pub(crate) trait JobError: Sized {
+    /// The error; its `Cancelled` in place of whatever else says that a token has stopped the work.
+    fn told(self) -> Self;
+}
+
 /// Work that tells a hook how far it is.
 type Work<'a, T, E> = dyn FnOnce(Hook<'_>) -> Result<T, E> + 'a;
 
@@ -52,7 +59,11 @@ pub struct Job<'a, T, E> {
 
 impl<'a, T, E> Job<'a, T, E> {
     /// Work that tells a hook how far it is, and stops soon with an error of its own once that returns false.
-    pub(crate) fn new(work: impl FnOnce(Hook<'_>) -> Result<T, E> + 'a) -> Self {
+    pub(crate) fn new(work: impl FnOnce(Hook<'_>) -> Result<T, E> + 'a) -> Self
+    where
+        E: JobError,
+    {
+        let work = move |hook: Hook<'_>| work(hook).map_err(E::told);
         Self { work: Box::new(work), watchers: Vec::new(), tokens: Vec::new() }
     }
 
@@ -108,8 +119,11 @@ impl CancelToken {
         self.0.store(true, Ordering::Release);
     }
 
-    /// Does work that is no job: whatever it compiles stops within some hundredths of a second, with
-    /// [`CompileError::Cancelled`](crate::CompileError::Cancelled), once the token is cancelled.
+    /// Does work that is no job, or has jobs in it: whatever it compiles or evaluates stops within some
+    /// hundredths of a second once the token is cancelled, with
+    /// [`CompileError::Cancelled`](crate::CompileError::Cancelled),
+    /// [`EvalError::Cancelled`](crate::EvalError::Cancelled) or the like:
+    /// [`ErrorKind::Cancelled`](crate::ErrorKind::Cancelled).
     pub fn watches<T>(&self, work: impl FnOnce() -> T) -> T {
         let token = self.clone();
         watch::offer(Arc::new(move || !token.is_cancelled()), work)

@@ -17,12 +17,16 @@ pub(crate) struct PoolWorkers;
 
 impl Workers for PoolWorkers {
     fn each(&self, count: usize, task: &(dyn Fn(usize) + Sync)) {
-        let watches = Watches::present();
-        // A thread that waits may do work of somebody else.
-        Watches::NONE.hold(|| {
-            (0..count).into_par_iter().for_each(|index| watches.clone().hold(|| task(index)));
-        });
+        scatter(|watches| (0..count).into_par_iter().for_each(|index| watches.hold(|| task(index))));
     }
+}
+
+/// Gives work to the threads of the pool and waits for it. Whatever may be stopped of it is to be
+/// [held](Watches::hold) by the watches that `give` gets. A thread that waits may do work of somebody else,
+/// which these watches must not stop: whoever gives work and waits does it by this.
+pub(crate) fn scatter<T>(give: impl FnOnce(&Watches) -> T) -> T {
+    let watches = Watches::present();
+    Watches::NONE.hold(|| give(&watches))
 }
 
 #[cfg(not(feature = "parallel"))]

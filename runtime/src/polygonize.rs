@@ -20,7 +20,7 @@ use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, MeshReport};
 use crate::prune::PruneCounters;
@@ -217,6 +217,12 @@ pub enum PolygonizeError {
     /// The mesher stopped.
     #[error(transparent)]
     Mesh(#[from] MeshError<EvalError>),
+}
+
+impl JobError for PolygonizeError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { MeshError::Cancelled.into() } else { self }
+    }
 }
 
 impl Classified for PolygonizeError {

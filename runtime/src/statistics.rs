@@ -22,9 +22,9 @@ use jbt_model::query::Query;
 use crate::compiler::Compiler;
 pub use crate::counter::walks;
 use crate::debug::brief_debug;
-use crate::error::{Classified, CompileError, ErrorKind};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::mesh::{Lattice, LatticeError};
 
 /// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by
@@ -132,11 +132,10 @@ impl<'a> Statistics<'a> {
                 return Err(SupportsError::Cancelled);
             }
             let some = start..count.min(start + STRIDE);
-            let pairs: Vec<u64> = some
-                .clone()
-                .into_par_iter()
-                .map(|index| inside(compiler, &self.instances.alone(index), lattice.spacing(), &axes))
-                .collect::<Result<_, _>>()?;
+            let of = |index| inside(compiler, &self.instances.alone(index), lattice.spacing(), &axes);
+            let pairs: Vec<u64> = scatter(|watches| {
+                some.clone().into_par_iter().map(|index| watches.hold(|| of(index))).collect::<Result<_, _>>()
+            })?;
             for (index, pairs) in some.zip(pairs) {
                 supports.pairs += pairs;
                 *supports.by_node.entry(self.instances.node(index).0).or_default() += pairs;
@@ -178,9 +177,18 @@ pub enum SupportsError {
     /// The lattice has too many points.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
+    /// A leaf could not be evaluated.
+    #[error(transparent)]
+    Eval(#[from] EvalError),
     /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl JobError for SupportsError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
 }
 
 impl Classified for SupportsError {
@@ -188,6 +196,7 @@ impl Classified for SupportsError {
         match self {
             Self::Compile(error) => error.kind(),
             Self::Lattice(error) => error.kind(),
+            Self::Eval(error) => error.kind(),
             Self::Cancelled => ErrorKind::Cancelled,
         }
     }
@@ -203,7 +212,7 @@ fn inside(
     leaf: &CheckedTree,
     spacing: f64,
     axes: &[Vec<f32>; 3],
-) -> Result<u64, CompileError> {
+) -> Result<u64, SupportsError> {
     let support = leaf.support();
     let [low, high] = [support.low(), support.high()];
     let farthest = low.iter().chain(&high).fold(0.0, |most: f64, side| most.max(side.abs()));
@@ -219,8 +228,12 @@ fn inside(
         return Ok(0);
     }
     let evaluator = compiler.evaluator(leaf, Query::FIELD)?;
-    let slabs = zs.par_iter().map_init(Slab::default, |slab, &z| slab.count(&evaluator, xs, ys, z));
-    Ok(slabs.sum())
+    let count = |slab: &mut Slab, &z: &f32| slab.count(&evaluator, xs, ys, z);
+    let slabs = scatter(|watches| {
+        let slabs = zs.par_iter().map_init(Slab::default, |slab, z| watches.hold(|| count(slab, z)));
+        slabs.collect::<Result<Vec<u64>, _>>()
+    })?;
+    Ok(slabs.into_iter().sum())
 }
 
 /// Points and their fields.
@@ -234,7 +247,7 @@ struct Slab {
 
 impl Slab {
     /// The points with a positive field among `xs` x `ys` x {z}.
-    fn count(&mut self, evaluator: &Evaluator, xs: &[f32], ys: &[f32], z: f32) -> u64 {
+    fn count(&mut self, evaluator: &Evaluator, xs: &[f32], ys: &[f32], z: f32) -> Result<u64, EvalError> {
         let mut found = 0;
         for ys in ys.chunks((BATCH / xs.len()).max(1)) {
             self.x.clear();
@@ -247,9 +260,9 @@ impl Slab {
             self.z.resize(self.x.len(), z);
             self.field.resize(self.x.len(), 0.0);
             let planes = [&self.x[..], &self.y, &self.z];
-            evaluator.eval_planes(planes, &mut [&mut self.field]).expect("the planes are equally long");
+            evaluator.eval_planes(planes, &mut [&mut self.field])?;
             found += self.field.iter().filter(|&&field| field > 0.0).count() as u64;
         }
-        found
+        Ok(found)
     }
 }

@@ -3,14 +3,20 @@
 use std::time::{Duration, Instant};
 
 use jbt::contour::{Detail, Plane, Slicer};
+use jbt::render::{Quality, RenderError};
 use jbt::sample::Sampler;
+use jbt::solid::Measure;
 use jbt::{
-    CancelToken, Classified, CompileError, Compiler, Engine, ErrorKind, Evaluator, Fineness, Polygonize,
-    Query, Task,
+    CancelToken, Classified, CompileError, Compiler, Engine, ErrorKind, EvalError, Evaluator, Fineness,
+    Polygonize, Query, Render, Renderer, Solid, Task,
 };
+use jbt_testkit::gaps::WorkGaps;
 use jbt_testkit::scene::tree;
 
-/// More than any gap: alone on a machine 50 ms are kept, beside other work a thread waits for its turn.
+/// The longest gap, in the processor's time. Alone on a machine 50 ms are kept; beside other work caches are
+/// shared, and what optimises nothing takes many times as long.
+const MOST: Duration = Duration::from_millis(if cfg!(debug_assertions) { 2_000 } else { 150 });
+/// More than any gap by the clock: beside other work a thread waits for its turn.
 const LONGEST: Duration = Duration::from_millis(750);
 
 const HERO: &str = include_str!("../../examples/hero.jbt");
@@ -76,36 +82,111 @@ fn a_mesh_stops_while_its_programs_are_made() {
     assert_eq!(told, 1, "the first look comes before the first program");
 }
 
-/// The reference is the slowest engine: its points are the longest pieces of work.
-/// What hears of progress.
-type Hook<'a> = dyn FnMut(f32) + Send + 'a;
+/// The longest gap of work on one thread, in the processor's time.
+fn gap(work: impl FnOnce(WorkGaps) + Send) -> Duration {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    pool.install(|| WorkGaps::longest(work))
+}
 
 #[test]
-fn looks_are_never_far_apart() {
+fn looks_of_jobs_are_never_far_apart() {
     let tree = tree(HERO);
-    let compiler = Compiler::for_engine(Engine::Scalar);
-    let compiled = compiler.compile(&tree);
-    let longest = |work: &dyn Fn(&mut Hook<'_>)| {
-        let (mut last, mut longest) = (Instant::now(), Duration::ZERO);
-        work(&mut |_| {
-            longest = longest.max(last.elapsed());
-            last = Instant::now();
-        });
-        longest
-    };
-    let settings = Polygonize { fineness: Fineness::Resolution(24), ..Polygonize::default() };
-    let mesh = longest(&|told| drop(settings.with(&compiled).on_progress(told).run().expect("a mesh")));
+    // The reference is the slowest engine: its points are the longest pieces of work.
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let settings = Polygonize { fineness: Fineness::Resolution(12), ..Polygonize::default() };
     let sampler = Sampler::of(&compiled, Query::ALL).expect("a sampler");
     let lattice = settings.lattice(&tree).expect("a lattice");
-    let samples = longest(&|told| drop(sampler.dense(&lattice).on_progress(told).run().expect("samples")));
     let slicer = Slicer::of(&compiled, &Plane::default(), Query::FIELD).expect("a slicer");
     let rectangle = slicer.rectangle().expect("a rectangle");
-    let contour = longest(&|told| {
-        drop(slicer.contour(&rectangle, &Detail::default()).on_progress(told).run().expect("a contour"));
-    });
-    for (what, took) in [("mesh", mesh), ("samples", samples), ("contour", contour)] {
-        assert!(took < LONGEST, "{what}: {took:?}");
+    let detail = Detail { fineness: Fineness::Resolution(24), ..Detail::default() };
+    let renderer = Renderer::of(&compiled).expect("a renderer");
+    let render = Render { size: [32, 24], quality: Quality::Draft, ..Render::default() };
+    let solid = Solid::of(&compiled).expect("a solid");
+    let measure = Measure { fineness: Fineness::Resolution(8), ..Measure::default() };
+    let gaps = [
+        (
+            "mesh",
+            gap(|gaps| drop(settings.with(&compiled).on_progress(|_| gaps.look()).run().expect("a mesh"))),
+        ),
+        (
+            "samples",
+            gap(|gaps| drop(sampler.dense(&lattice).on_progress(|_| gaps.look()).run().expect("samples"))),
+        ),
+        (
+            "contour",
+            gap(|gaps| {
+                drop(
+                    slicer
+                        .contour(&rectangle, &detail)
+                        .on_progress(|_| gaps.look())
+                        .run()
+                        .expect("a contour"),
+                );
+            }),
+        ),
+        (
+            "picture",
+            gap(|gaps| drop(render.with(&renderer).on_progress(|_| gaps.look()).run().expect("a picture"))),
+        ),
+        (
+            "measures",
+            gap(|gaps| drop(solid.measure(&measure).on_progress(|_| gaps.look()).run().expect("measures"))),
+        ),
+    ];
+    for (what, gap) in gaps {
+        assert!(gap < MOST, "{what}: {gap:?}");
     }
+}
+
+#[test]
+fn looks_of_what_is_no_job_are_never_far_apart() {
+    let tree = tree(&sines(1_500));
+    for engine in Engine::ALL {
+        let compiled = Compiler::for_engine(engine).compile(&tree);
+        let made = gap(|_| drop(compiled.evaluator(Query::FIELD)));
+        assert!(made < MOST, "compiling, {engine}: {made:?}");
+    }
+    // As long as a look, each point of it: all of them together are a second.
+    let evaluator = Compiler::for_engine(Engine::Scalar).evaluator(&tree, Query::FIELD).expect("it fits");
+    let points = vec![[0.5_f32; 3]; 1_000];
+    let mut samples = evaluator.samples();
+    let evaluated = gap(|_| evaluator.par_eval(&points, &mut samples).expect("nobody stops it"));
+    assert!(evaluated < MOST, "{evaluated:?}");
+}
+
+#[test]
+fn evaluating_stops_on_all_threads() {
+    let tree = tree(&sines(1_500));
+    let evaluator = Compiler::for_engine(Engine::Scalar).evaluator(&tree, Query::FIELD).expect("it fits");
+    let points = vec![[0.5_f32; 3]; 100_000];
+    let mut samples = evaluator.samples();
+    let took = noticed(|token| {
+        let refused = token.watches(|| evaluator.par_eval(&points, &mut samples));
+        assert_eq!(refused, Err(EvalError::Cancelled));
+    });
+    assert!(took < LONGEST, "{took:?}");
+    let cancelled = CancelToken::new();
+    cancelled.cancel();
+    let probed = cancelled.watches(|| evaluator.probe([0.0; 3]).value());
+    assert_eq!(probed, 0.0, "a single point is answered");
+    assert!(evaluator.eval(&points[..2], &mut samples).is_ok(), "the watch is gone");
+}
+
+#[test]
+fn a_picture_stops_while_its_rays_are_followed() {
+    let tree = tree(HERO);
+    let renderer = Renderer::new(&Compiler::for_engine(Engine::Scalar), &tree).expect("a renderer");
+    let render = Render { size: [640, 480], quality: Quality::Best, ..Render::default() };
+    let took = noticed(|token| {
+        let stopped = render.with(&renderer).cancel(token).run();
+        assert!(matches!(stopped, Err(RenderError::Cancelled)), "{stopped:?}");
+    });
+    assert!(took < LONGEST, "{took:?}");
+    // A token around a job stops it as well.
+    let cancelled = CancelToken::new();
+    cancelled.cancel();
+    let stopped = cancelled.watches(|| render.with(&renderer).run());
+    assert!(matches!(stopped, Err(RenderError::Cancelled)), "{stopped:?}");
 }
 
 #[test]

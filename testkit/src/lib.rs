@@ -8,6 +8,8 @@
 
 pub mod bits;
 pub mod boxes;
+#[cfg(feature = "models")]
+pub mod gaps;
 pub mod golden;
 pub mod points;
 #[cfg(feature = "models")]

@@ -6,114 +6,71 @@
 //! ```
 //!
 //! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those
-//! of the processor that the one thread that works took, so that other work on the machine does not count;
-//! Linux alone tells them. Compiling is asked by its watch, every 5 ms at most; other work by its hook of
-//! progress. Only scenes whose name has PART are looked at. What a gap of more than 50 ms is about stands
-//! behind a `!`.
+//! of the processor, which Linux alone tells (`jbt_testkit::gaps`). Only scenes whose name has PART are
+//! looked at; ENGINE is `scalar`, `lanes` or `jit`. Behind a gap of more than 50 ms stands a `!`. All of them
+//! take half an hour, most of it the scalar reference.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fs;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use jbt::contour::{Detail, Plane, Slicer};
-use jbt::internals::ir::watch;
 use jbt::sample::Sampler;
 use jbt::solid::Measure;
 use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Polygonize, Query, Render, Renderer, Solid, Task};
+use jbt_testkit::gaps::WorkGaps;
 use jbt_testkit::scene::tree;
 
 /// What is promised.
 const MOST: Duration = Duration::from_millis(50);
-
-/// The time of a processor that this thread has taken.
-fn taken() -> Duration {
-    let told = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = told.split_whitespace().next().and_then(|number| number.parse().ok());
-    Duration::from_nanos(nanoseconds.unwrap_or(0))
-}
-
-/// The longest gap so far.
-#[derive(Clone)]
-struct Gaps(Arc<Mutex<(Duration, Duration)>>);
-
-impl Gaps {
-    fn new() -> Self {
-        Self(Arc::new(Mutex::new((taken(), Duration::ZERO))))
-    }
-
-    fn look(&self) {
-        let now = taken();
-        let mut gaps = self.0.lock().expect("one thread");
-        gaps.1 = gaps.1.max(now.saturating_sub(gaps.0));
-        gaps.0 = now;
-    }
-
-    fn longest(&self) -> Duration {
-        self.look();
-        self.0.lock().expect("one thread").1
-    }
-}
-
-/// The longest gap of work that is given what hears of progress.
-fn of_job(work: impl FnOnce(Gaps)) -> Duration {
-    let gaps = Gaps::new();
-    work(gaps.clone());
-    gaps.longest()
-}
-
-/// The longest gap of work that compiles.
-fn of_compiling(work: impl FnOnce()) -> Duration {
-    of_job(|gaps| {
-        let asked = move || {
-            gaps.look();
-            true
-        };
-        watch::offer(Arc::new(asked), work);
-    })
-}
 
 /// The gaps of all tasks.
 fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
     let compiler = Compiler::for_engine(engine);
     let compiled = compiler.compile(tree);
     let mut told = Vec::new();
-    told.push(("too large", of_compiling(|| drop(compiled.too_large_for(&[Task::Mesh])))));
-    told.push(("eval", of_compiling(|| drop(compiled.evaluator(Query::ALL)))));
+    told.push(("too large", WorkGaps::longest(|_| drop(compiled.too_large_for(&[Task::Mesh])))));
+    told.push(("eval", WorkGaps::longest(|_| drop(compiled.evaluator(Query::ALL)))));
     let mut renderer = None;
-    let rest = || {
+    let rest = |_| {
         renderer = Renderer::of(&compiled).ok();
         let _ = (Solid::of(&compiled), Sampler::of(&compiled, Query::ALL));
         let _ = Slicer::of(&compiled, &Plane::default(), Query::FIELD);
     };
-    told.push(("compile", of_compiling(rest)));
+    told.push(("compile", WorkGaps::longest(rest)));
     let mesh = Polygonize { fineness: Fineness::Resolution(48), ..Polygonize::default() };
     let bounded = tree.support().is_finite();
     let region = (!bounded).then(|| Box3::new([-1.0; 3], [1.0; 3]));
     let mesh = Polygonize { region, ..mesh };
-    told.push(("mesh", of_job(|gaps| drop(mesh.with(&compiled).on_progress(|_| gaps.look()).run()))));
+    told.push((
+        "mesh",
+        WorkGaps::longest(|gaps| drop(mesh.with(&compiled).on_progress(|_| gaps.look()).run())),
+    ));
     if let Some(renderer) = &renderer {
         let render = Render { size: [160, 120], region: None, ..Render::default() };
-        told.push(("render", of_job(|gaps| drop(render.with(renderer).on_progress(|_| gaps.look()).run()))));
+        told.push((
+            "render",
+            WorkGaps::longest(|gaps| drop(render.with(renderer).on_progress(|_| gaps.look()).run())),
+        ));
     }
     if let (Ok(sampler), Ok(lattice)) = (Sampler::of(&compiled, Query::ALL), mesh.lattice(tree)) {
         told.push((
             "sample",
-            of_job(|gaps| drop(sampler.dense(&lattice).on_progress(|_| gaps.look()).run())),
+            WorkGaps::longest(|gaps| drop(sampler.dense(&lattice).on_progress(|_| gaps.look()).run())),
         ));
     }
     if let Ok(slicer) = Slicer::of(&compiled, &Plane::default(), Query::FIELD)
         && let Ok(rectangle) = slicer.rectangle()
     {
         let job = slicer.contour(&rectangle, &Detail::default());
-        told.push(("contour", of_job(|gaps| drop(job.on_progress(|_| gaps.look()).run()))));
+        told.push(("contour", WorkGaps::longest(|gaps| drop(job.on_progress(|_| gaps.look()).run()))));
     }
     if let Ok(solid) = Solid::of(&compiled) {
         let settings = Measure { fineness: Fineness::Resolution(32), ..Measure::default() };
         told.push((
             "stats",
-            of_job(|gaps| drop(solid.measure(&settings).on_progress(|_| gaps.look()).run())),
+            WorkGaps::longest(|gaps| drop(solid.measure(&settings).on_progress(|_| gaps.look()).run())),
         ));
     }
     told

@@ -2,10 +2,18 @@
 //! them.
 //!
 //! It keeps four bytes for each place, because a function may have a million values: what defines a value
-//! stands in the function, and whoever asks says where.
+//! stands in the function, and whoever asks says where. An instruction has its place beside those that were
+//! written when it was: what is looked at together is near in memory.
+//!
+//! ```text
+//! places   [.. those whose last operand is near v700 ..][.. v710 ..] .. [.. v9000 ..]
+//!            `- a few, from a place by the last operand;  then, where all of these are taken, from a place
+//!               by the whole key: no choice of operands makes a long row of taken places
+//! ```
 
 use crate::entity::{Entity, Value};
 use crate::function::InstKind;
+use crate::watch::look;
 
 /// What makes two instructions the same: what they are, and up to three numbers of theirs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -17,6 +25,8 @@ pub(super) struct Key {
 impl Key {
     /// A number that no operand has.
     const NONE: u32 = u32::MAX;
+    /// What ops begin at.
+    const OPS: u32 = 4;
 
     /// The key of an instruction; folds are never the same.
     pub(super) fn new(kind: &InstKind) -> Option<Self> {
@@ -30,29 +40,51 @@ impl Key {
                 for (place, arg) in of.iter_mut().zip(args) {
                     *place = arg.index() as u32;
                 }
-                (4 + *op as u32, of)
+                (Self::OPS + *op as u32, of)
             }
             InstKind::Fold(_) => return None,
         };
         Some(Self { what, of })
     }
 
-    /// The place where it is looked for first, of so many and one. Keys are numbers that count up, which a
-    /// product alone leaves in a row: both halves of a long product tell them apart.
-    fn home(self, most: usize) -> usize {
+    /// A number that tells keys apart. Keys are numbers that count up, which a product alone leaves in a row:
+    /// both halves of a long product tell them apart.
+    fn hash(self) -> u64 {
         const ODD: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03];
         let both = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
         let [a, b] = [both(self.what, self.of[0]) ^ ODD[0], both(self.of[1], self.of[2]) ^ ODD[1]];
         let product = u128::from(a) * u128::from(b);
-        (product as u64 ^ (product >> 64) as u64) as usize & most
+        product as u64 ^ (product >> 64) as u64
+    }
+
+    /// The places where it is looked for, one after the other, of so many and one.
+    fn places(self, most: usize) -> impl Iterator<Item = usize> {
+        let hash = self.hash();
+        let near = self.last_operand().map(|last| 2 * last + (hash >> 32) as usize % SPREAD);
+        let near = near.into_iter().flat_map(move |first| (first..first + NEAR).map(move |at| at & most));
+        near.chain((0..).map(move |at| (hash as usize).wrapping_add(at) & most))
+    }
+
+    /// The last of the values that an op is done on.
+    fn last_operand(self) -> Option<usize> {
+        let is_op = self.what >= Self::OPS;
+        is_op
+            .then(|| self.of.into_iter().filter(|&of| of != Self::NONE).max())
+            .flatten()
+            .map(|of| of as usize)
     }
 }
+
+/// Places beside the last operand that are tried.
+const NEAR: usize = 16;
+/// Places over which instructions on the same operand are spread.
+const SPREAD: usize = 16;
 
 /// A place of the table.
 #[derive(Clone, Copy)]
 pub(super) struct KnownPlace(usize);
 
-/// The table. At most half of its places are taken, so that the next free one is near.
+/// The table. At most half of its places are taken, so that a free one is near.
 #[derive(Default)]
 pub(super) struct KnownInsts {
     /// Values, as 1 and their index; 0 is free. Their number is a power of two.
@@ -69,6 +101,7 @@ impl KnownInsts {
         }
         let before = std::mem::replace(&mut self.places, vec![0; wanted]);
         for place in before.into_iter().filter(|&place| place != 0) {
+            look();
             if let Some(key) = key_of(value_at(place)) {
                 let KnownPlace(free) = self.place(key, |_| false);
                 self.places[free] = place;
@@ -78,12 +111,8 @@ impl KnownInsts {
 
     /// Where a key is, or would be: whoever asks says which values have it. There is room for it.
     fn place(&self, key: Key, has_key: impl Fn(Value) -> bool) -> KnownPlace {
-        let most = self.places.len() - 1;
-        let mut place = key.home(most);
-        while self.places[place] != 0 && !has_key(value_at(self.places[place])) {
-            place = (place + 1) & most;
-        }
-        KnownPlace(place)
+        let is_it = |&place: &usize| self.places[place] == 0 || has_key(value_at(self.places[place]));
+        KnownPlace(key.places(self.places.len() - 1).find(is_it).expect("at most half of them are taken"))
     }
 
     /// The value that a key has, and its place, which is free if there is none.
@@ -112,15 +141,15 @@ fn value_at(place: u32) -> Value {
 mod tests {
     use super::*;
 
-    /// Steps beyond the first place, on average, until a place is found for keys that come one after another.
+    /// Steps beyond the first place until a place is found, on average, for keys that come one after another.
     fn steps(keys: impl Iterator<Item = [u32; 3]>) -> f64 {
         let (mut known, mut steps, mut count) = (KnownInsts::default(), 0, 0);
         known.reserve(100_000, |_| None);
         let most = known.places.len() - 1;
         for of in keys {
-            let key = Key { what: 4, of };
+            let key = Key { what: Key::OPS, of };
             let place = known.place(key, |_| false);
-            steps += place.0.wrapping_sub(key.home(most)) & most;
+            steps += key.places(most).position(|at| at == place.0).expect("it is one of them");
             known.set(place, Value::new(count));
             count += 1;
         }
@@ -139,5 +168,16 @@ mod tests {
         for (what, steps) in [("chain", chain), ("pairs", pairs), ("sums", sums), ("fused", fused)] {
             assert!(steps < 2.0, "{what}: {steps}");
         }
+        // All of them are beside one place.
+        let star = steps((0..count).map(|i| [i, count, none]));
+        assert!(star < NEAR as f64 + 2.0, "{star}");
+    }
+
+    #[test]
+    fn neighbours_are_found_side_by_side() {
+        let (most, none) = (1 << 20, u32::MAX);
+        let first = |of| Key { what: Key::OPS, of }.places(most - 1).next().expect("there is one");
+        let places: Vec<usize> = (0..1000).map(|i| first([i, 0, none])).collect();
+        assert!(places.windows(2).all(|two| two[0].abs_diff(two[1]) < 2 * SPREAD), "{places:?}");
     }
 }

@@ -48,7 +48,7 @@ pub fn dce(function: &Function) -> Function {
         let body = &function.blocks[fold.body];
         pruned.blocks[fold.body].params = filter(&body.params);
         pruned.blocks[fold.body].results = filter(&body.results);
-        pruned.insts[inst].results = filter(&data.results);
+        pruned.insts[inst].results = filter(&data.results).as_slice().into();
         if let InstKind::Fold(pruned) = &mut pruned.insts[inst].kind {
             pruned.initial = filter(&fold.initial);
         }
@@ -84,6 +84,7 @@ fn sources(function: &Function) -> Store<Value, Option<ValueSource>> {
         sources.push(None);
     }
     for (inst, data) in function.insts.iter() {
+        look();
         match &data.kind {
             InstKind::Input(_)
             | InstKind::Constant(_)

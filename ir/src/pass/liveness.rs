@@ -90,6 +90,7 @@ impl Uses {
             }
         };
         for &inst in &data.insts {
+            crate::watch::look();
             let (operands, inner) = self.of(function, inst);
             capture(&self.home, operands);
             capture(&self.home, inner);

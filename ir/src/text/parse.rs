@@ -247,7 +247,7 @@ impl Parser {
             "fold" => {
                 let (fold, named) = self.fold(line, &start)?;
                 *inner = Some(named);
-                Ok(InstKind::Fold(fold))
+                Ok(InstKind::Fold(Box::new(fold)))
             }
             name => match Op::ALL.iter().find(|op| op.name() == name) {
                 Some(&op) => Ok(InstKind::Op { op, args: line.values()? }),

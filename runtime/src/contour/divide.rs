@@ -282,7 +282,9 @@ impl<W: SquareWork> SquareDivider<'_, '_, W> {
         let all = squares.iter().zip(surveyed);
         let found: Vec<_> = if squares[0].size >= PARALLEL * self.plan.leaf {
             let all: Vec<_> = all.collect();
-            all.into_par_iter().map(visit).collect::<Result<_, _>>()?
+            scatter(|watches| {
+                all.into_par_iter().map(|one| watches.hold(|| visit(one))).collect::<Result<_, _>>()
+            })?
         } else {
             all.map(visit).collect::<Result<_, _>>()?
         };

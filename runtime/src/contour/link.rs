@@ -95,7 +95,8 @@ fn following(segments: &[ContourSegment]) -> (Vec<usize>, Vec<usize>) {
         order.par_sort_unstable_by_key(|&segment| key(&segments[segment]));
         order
     };
-    let (begins, ends) = join(|| sorted(|segment| segment.from), || sorted(|segment| segment.to));
+    let (begins, ends) =
+        scatter(|_| join(|| sorted(|segment| segment.from), || sorted(|segment| segment.to)));
     let mut next = vec![0; segments.len()];
     for (&begin, &end) in begins.iter().zip(&ends) {
         let fits = segments[begin].from == segments[end].to;
@@ -167,7 +168,7 @@ fn nest(drafts: &[LoopDraft], segments: &[ContourSegment], of_segment: &[usize])
     let crossings = (0..segments.len()).filter(|&segment| segments[segment].from.axis() == 0);
     let mut crossings: Vec<(EdgeKey, usize)> =
         crossings.filter_map(|segment| Some((segments[segment].from, loop_of(segment)?))).collect();
-    crossings.par_sort_unstable_by_key(|(key, _)| *key);
+    scatter(|_| crossings.par_sort_unstable_by_key(|(key, _)| *key));
     // Those on the left border, by row.
     let left: Vec<(u32, usize)> = crossings
         .iter()

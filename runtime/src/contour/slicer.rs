@@ -15,6 +15,7 @@ use crate::debug::brief_debug;
 use crate::divide::Edit;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
+use crate::job::JobError;
 use crate::kernel::Engine;
 use crate::mesh::LatticeError;
 use crate::progress::Cancelled;
@@ -124,6 +125,12 @@ pub enum SliceError {
     /// It was told to stop.
     #[error("the work was cancelled")]
     Cancelled,
+}
+
+impl JobError for SliceError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
 }
 
 impl Classified for SliceError {

@@ -164,7 +164,10 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
         let depth = parts.depth;
         let decided = self.decide(around, parts)?;
         let subtrees: Vec<_> = if depth < PARALLEL_DEPTH {
-            decided.into_par_iter().map(|part| self.subtree(part)).collect::<Result<_, _>>()?
+            scatter(|watches| {
+                let parts = decided.into_par_iter();
+                parts.map(|part| watches.hold(|| self.subtree(part))).collect::<Result<_, _>>()
+            })?
         } else {
             decided.into_iter().map(|part| self.subtree(part)).collect::<Result<_, _>>()?
         };

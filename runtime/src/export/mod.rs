@@ -244,7 +244,8 @@ fn check_creases(mesh: &Mesh) -> Option<String> {
 /// The index of the first item with a property.
 fn first<T: Sync>(items: &[T], has: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const PART: usize = 1 << 14;
-    let parts: Vec<Option<usize>> = items.par_chunks(PART).map(|part| part.iter().position(&has)).collect();
+    let found = |part: &[T]| part.iter().position(&has);
+    let parts: Vec<Option<usize>> = scatter(|_| items.par_chunks(PART).map(found).collect());
     parts.into_iter().enumerate().find_map(|(part, place)| Some(part * PART + place?))
 }
 

@@ -106,7 +106,7 @@ pub(super) fn write_items(
     };
     for first in (0..count).step_by(BLOCK * BLOCKS) {
         let firsts: Vec<usize> = (first..count.min(first + BLOCK * BLOCKS)).step_by(BLOCK).collect();
-        let blocks: Vec<io::Result<Vec<u8>>> = firsts.into_par_iter().map(block).collect();
+        let blocks: Vec<io::Result<Vec<u8>>> = scatter(|_| firsts.into_par_iter().map(block).collect());
         blocks.into_iter().try_for_each(|block| out.write_all(&block?))?;
     }
     Ok(())

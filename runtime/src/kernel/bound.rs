@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use jbt_ir::domain::counting::{evaluations_per_row, ops_per_row};
+use jbt_ir::domain::counting::{evaluations_per_row, of_selection, ops_per_row};
 use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::dce;
-use jbt_ir::{Function, Selection, Straight, Tables, Verified};
+use jbt_ir::{Function, Selection, Straight, Tables, Verified, watch};
 
 use super::engine::{CompiledFunction, Engine, Wish, compile};
 use super::optimise::{Purpose, optimise};
@@ -118,7 +118,37 @@ impl BoundKernel {
         inputs: &[&[f32]],
         outputs: &mut [&mut [f32]],
     ) -> Result<usize, EvalError> {
-        self.program.run_selected(selection, inputs, outputs)?;
-        Ok(inputs.first().map_or(0, |plane| plane.len()).next_multiple_of(self.kernel.block()))
+        let (count, block) = (inputs.first().map_or(0, |plane| plane.len()), self.kernel.block());
+        let lanes = count.next_multiple_of(block);
+        // Whoever asks about a single point gets its answer, and looks between two of them.
+        if count > 1 {
+            watch::go_on()?;
+        }
+        // Planes that differ in length are refused as a whole.
+        let is_even = || {
+            inputs.iter().all(|plane| plane.len() == count)
+                && outputs.iter().all(|plane| plane.len() == count)
+        };
+        let most = if count > block { self.between_looks(selection) } else { block };
+        if count <= most || !is_even() {
+            self.program.run_selected(selection, inputs, outputs)?;
+            return Ok(lanes);
+        }
+        for start in (0..count).step_by(most) {
+            watch::go_on()?;
+            let some = start..count.min(start + most);
+            let inputs: Vec<&[f32]> = inputs.iter().map(|plane| &plane[some.clone()]).collect();
+            let mut outputs: Vec<&mut [f32]> =
+                outputs.iter_mut().map(|plane| &mut plane[some.clone()]).collect();
+            self.program.run_selected(selection, &inputs, &mut outputs)?;
+        }
+        Ok(lanes)
+    }
+
+    /// Points that run without a look whether they are wanted: whole blocks that take some milliseconds.
+    fn between_looks(&self, selection: &Selection) -> usize {
+        let ops = of_selection(&self.kernel.ops_per_row, selection).max(1);
+        let blocks = self.kernel.engine().ops_between_looks() / ops / self.kernel.block() as u64;
+        blocks.max(1) as usize * self.kernel.block()
     }
 }

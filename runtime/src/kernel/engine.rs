@@ -54,6 +54,14 @@ impl Engine {
         }
     }
 
+    /// Ops that take some milliseconds.
+    pub(super) const fn ops_between_looks(self) -> u64 {
+        match self {
+            Self::Scalar => 1 << 19,
+            Self::Lanes | Self::Jit => 1 << 23,
+        }
+    }
+
     /// A program for a function. The reason if there is none.
     fn compile(self, function: &Arc<Verified>, level: Level) -> Result<Arc<dyn Program>, String> {
         let absent = || format!("this build has no {} (cargo feature `{self}`)", self.name().to_uppercase());

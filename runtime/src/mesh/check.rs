@@ -125,7 +125,7 @@ pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
     let part = vertices.div_ceil(thread_count().clamp(1, MAX_SPLIT)).max(1);
     let parts: Vec<Range<usize>> =
         (0..vertices.max(1)).step_by(part).map(|first| first..vertices.min(first + part)).collect();
-    parts.into_par_iter().all(|own| are_paired(own, vertices, triangles))
+    scatter(|_| parts.into_par_iter().all(|own| are_paired(own, vertices, triangles)))
 }
 
 /// Threads that check a mesh together: each reads all triangles.
@@ -202,8 +202,10 @@ fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
 pub fn check_manifold(vertices: usize, triangles: &[[u32; 3]]) -> Result<(), Defect> {
     let edges = DirectedEdges::new(vertices, triangles).map_err(|triangle| Defect::Index { triangle })?;
     let all = 0..edges.vertices();
-    let defect = all.clone().into_par_iter().find_map_first(|vertex| edges.broken_edge(vertex));
-    let defect = defect.or_else(|| all.into_par_iter().find_map_first(|vertex| edges.broken_fan(vertex)));
+    let defect = scatter(|_| {
+        let defect = all.clone().into_par_iter().find_map_first(|vertex| edges.broken_edge(vertex));
+        defect.or_else(|| all.into_par_iter().find_map_first(|vertex| edges.broken_fan(vertex)))
+    });
     defect.map_or(Ok(()), Err)
 }
 

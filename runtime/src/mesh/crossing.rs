@@ -108,20 +108,18 @@ pub(crate) fn look(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Unflipp
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
-    let found = (0..groups).into_par_iter().map_init(
-        || Signs::new(bricks),
-        |signs, index| {
-            span!("cells of some bricks");
-            let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
-            for brick in index * group..bricks.len().min((index + 1) * group) {
-                samples.gather(bricks, brick, &mut signs.values);
-                signs.find(bricks, iso, brick, &mut found);
-            }
-            found.corners.shrink_to_fit();
-            found
-        },
-    );
-    let found: Vec<FoundCells> = found.collect();
+    let of_group = |signs: &mut Signs, index: usize| {
+        span!("cells of some bricks");
+        let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
+        for brick in index * group..bricks.len().min((index + 1) * group) {
+            samples.gather(bricks, brick, &mut signs.values);
+            signs.find(bricks, iso, brick, &mut found);
+        }
+        found.corners.shrink_to_fit();
+        found
+    };
+    let found: Vec<FoundCells> =
+        scatter(|_| (0..groups).into_par_iter().map_init(|| Signs::new(bricks), of_group).collect());
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
     let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
     let mut corners = Vec::with_capacity(groups);
@@ -366,14 +364,14 @@ struct BrickCounts {
 }
 
 /// Numbers the vertices of each brick in the order of its cells. Returns what each brick has.
-fn number_vertices(
+fn number_vertices<'a>(
     bricks: &Bricks,
     starts_of_cells: &[usize],
-    cells: &mut [CrossedCell],
+    cells: &'a mut [CrossedCell],
 ) -> Vec<BrickCounts> {
     let group = bricks.group();
     let groups = split(cells, starts_of_cells, group, 1);
-    let counts = groups.into_par_iter().enumerate().flat_map_iter(|(index, mut cells)| {
+    let of_group = |(index, mut cells): (usize, &'a mut [CrossedCell])| {
         let first = index * group;
         (first..bricks.len().min(first + group)).map(move |brick| {
             let count = starts_of_cells[brick + 1] - starts_of_cells[brick];
@@ -381,8 +379,8 @@ fn number_vertices(
             cells = rest;
             number_brick(bricks, brick, mine)
         })
-    });
-    counts.collect()
+    };
+    scatter(|_| groups.into_par_iter().enumerate().flat_map_iter(of_group).collect())
 }
 
 /// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low

@@ -188,15 +188,17 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         // Near the top there are few boxes, and each is costly.
         let group = if level.places.len() < 256 { 1 } else { 16 };
         let found = AtomicUsize::new(0);
-        let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
-        let groups = groups.map(|(places, regions)| {
+        let of_group = |(places, regions): (&[[u32; 3]], &[F::Region])| {
             self.progress.ask()?;
             let children = self.children(places, regions, size)?;
             let before = found.fetch_add(children.regions.len(), Ordering::Relaxed);
             self.check(before + children.regions.len())?;
-            Ok(children)
-        });
-        let groups = groups.collect::<Result<Vec<BoxChildren<F::Region>>, MeshError<F::Error>>>()?;
+            Ok::<_, MeshError<F::Error>>(children)
+        };
+        let groups: Vec<BoxChildren<F::Region>> = scatter(|watches| {
+            let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
+            groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
+        })?;
         let mut masks = Vec::with_capacity(level.places.len());
         let mut regions = Vec::with_capacity(found.into_inner());
         for mut children in groups {
@@ -356,7 +358,7 @@ fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u3
     let of_parent = |parent: usize| {
         (0..8).filter(move |&child| masks[parent] >> child & 1 == 1).map(move |child| of_child(parent, child))
     };
-    (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip()
+    scatter(|_| (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip())
 }
 
 /// For each child and each direction: the direction of the neighbour's parent, and which child of that parent

@@ -1,11 +1,13 @@
 //! Why there is no mesh, and the bounds of what may be asked for.
 
+use std::any::Any;
 use std::error::Error;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
 use crate::error::{Classified, ErrorKind, EvalError};
+use crate::job::JobError;
 use crate::progress::Cancelled;
 
 /// The smallest [`Options::brick`](super::Options::brick).
@@ -93,6 +95,13 @@ impl Classified for MeshError<EvalError> {
             Self::Field(error) => error.kind(),
             Self::Cancelled => ErrorKind::Cancelled,
         }
+    }
+}
+
+impl<E: Error + 'static> JobError for MeshError<E> {
+    fn told(self) -> Self {
+        let is_stop = |error: &E| (error as &dyn Any).downcast_ref() == Some(&EvalError::Cancelled);
+        if matches!(&self, Self::Field(error) if is_stop(error)) { Self::Cancelled } else { self }
     }
 }
 

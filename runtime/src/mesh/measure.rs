@@ -21,7 +21,7 @@ impl Mesh {
         };
         let point = |&position: &[f32; 3]| Box3::new(position, position);
         let part = |part: &[[f32; 3]]| part.iter().map(point).reduce(both);
-        let parts: Vec<Option<Box3>> = self.positions.par_chunks(PART).map(part).collect();
+        let parts: Vec<Option<Box3>> = scatter(|_| self.positions.par_chunks(PART).map(part).collect());
         parts.into_iter().flatten().reduce(both)
     }
 
@@ -59,7 +59,7 @@ impl Mesh {
     /// The sum of a number of each triangle.
     fn sum(&self, number: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
         let part = |part: &[[u32; 3]]| part.iter().map(&number).sum::<f64>();
-        let parts: Vec<f64> = self.triangles.par_chunks(PART).map(part).collect();
+        let parts: Vec<f64> = scatter(|_| self.triangles.par_chunks(PART).map(part).collect());
         parts.into_iter().sum()
     }
 

@@ -147,34 +147,37 @@ pub(crate) fn sample<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<BrickSamples, MeshError<F::Error>> {
     span!("sample");
-    let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
-        (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
+    let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) = scatter(|_| {
+        (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip()
+    });
     let starts = starts(counts.into_iter());
     let mut values = allocate(starts[bricks.len()])?;
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
     let total = groups.len();
     MeshStage::Lattice.begin(progress)?;
-    groups.into_par_iter().enumerate().try_for_each_init(
-        BrickPoints::default,
-        |points, (index, values)| {
-            span!("samples of some bricks");
-            let first = index * group;
-            for brick in first..bricks.len().min(first + group) {
-                let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
-                points.collect(bricks, brick, &rims[brick]);
-                let values = &mut values[mine];
-                let ask = |[x, y, z]: [&[f32]; 3], values: &mut [f32]| {
-                    field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)
-                };
-                match window.filter(|window| !window.holds(bricks, brick)) {
-                    None => points.eval(progress, values, ask)?,
-                    Some(window) => points.eval_some((window, bricks), progress, values, ask)?,
-                }
+    let of_group = |points: &mut BrickPoints, (index, values): (usize, &mut [f32])| {
+        span!("samples of some bricks");
+        let first = index * group;
+        for brick in first..bricks.len().min(first + group) {
+            let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
+            points.collect(bricks, brick, &rims[brick]);
+            let values = &mut values[mine];
+            let ask = |[x, y, z]: [&[f32]; 3], values: &mut [f32]| {
+                field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)
+            };
+            match window.filter(|window| !window.holds(bricks, brick)) {
+                None => points.eval(progress, values, ask)?,
+                Some(window) => points.eval_some((window, bricks), progress, values, ask)?,
             }
-            progress.add(1.0 / total as f64).map_err(MeshError::from)
-        },
-    )?;
+        }
+        progress.add(1.0 / total as f64).map_err(MeshError::from)
+    };
+    scatter(|watches| {
+        let groups = groups.into_par_iter().enumerate();
+        groups
+            .try_for_each_init(BrickPoints::default, |points, group| watches.hold(|| of_group(points, group)))
+    })?;
     Ok(BrickSamples { values, starts, rims })
 }
 

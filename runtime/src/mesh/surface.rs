@@ -19,25 +19,23 @@ pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f3
     let group = bricks.group();
     let mut triangles = vec![[0; 3]; 2 * crossings.quad_count()];
     let groups = split(&mut triangles, &crossings.quads, group, 2);
-    groups.into_par_iter().enumerate().for_each_init(
-        || Around::new(bricks),
-        |around, (index, triangles)| {
-            span!("triangles of some bricks");
-            let mut rest = triangles.as_chunks_mut().0;
-            let first = index * group;
-            for brick in first..bricks.len().min(first + group) {
-                let count = crossings.quads[brick + 1] - crossings.quads[brick];
-                if count == 0 {
-                    continue;
-                }
-                let (pairs, after) = std::mem::take(&mut rest).split_at_mut(count);
-                rest = after;
-                let lows = around.find_quads(bricks, crossings, brick);
-                around.fill(bricks, crossings, brick, lows);
-                split_quads(around, positions, pairs);
+    let fill = |around: &mut Around, (index, triangles): (usize, &mut [[u32; 3]])| {
+        span!("triangles of some bricks");
+        let mut rest = triangles.as_chunks_mut().0;
+        let first = index * group;
+        for brick in first..bricks.len().min(first + group) {
+            let count = crossings.quads[brick + 1] - crossings.quads[brick];
+            if count == 0 {
+                continue;
             }
-        },
-    );
+            let (pairs, after) = std::mem::take(&mut rest).split_at_mut(count);
+            rest = after;
+            let lows = around.find_quads(bricks, crossings, brick);
+            around.fill(bricks, crossings, brick, lows);
+            split_quads(around, positions, pairs);
+        }
+    };
+    scatter(|_| groups.into_par_iter().enumerate().for_each_init(|| Around::new(bricks), fill));
     triangles
 }
 

@@ -74,15 +74,19 @@ pub(crate) fn finish<F: Field>(
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
     let total = targets.len();
     MeshStage::Vertices.begin(progress)?;
-    let work = targets.into_par_iter().enumerate();
-    let work = work.map_init(VertexBatch::default, |batch, (index, target)| {
+    let finish = |batch: &mut VertexBatch, (index, target)| {
         let first = index * group;
         let bricks = first..source.bricks.len().min(first + group);
         let done = finish_group((source, progress), &widths, bricks, target, batch)?;
         progress.add(1.0 / total as f64)?;
         Ok::<_, MeshError<F::Error>>(done)
-    });
-    let done = work.try_reduce(Done::default, |a, b| Ok(a.and(b)))?;
+    };
+    let done = scatter(|watches| {
+        let work = targets.into_par_iter().enumerate();
+        let work =
+            work.map_init(VertexBatch::default, |batch, target| watches.hold(|| finish(batch, target)));
+        work.try_reduce(Done::default, |a, b| Ok(a.and(b)))
+    })?;
     Ok((mesh, done))
 }
 

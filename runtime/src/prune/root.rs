@@ -8,7 +8,7 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use jbt_ir::{Entity as _, Selection, Table};
+use jbt_ir::{Entity as _, Selection, Table, watch};
 use jbt_lower::prune_info::{PruneInfo, Rule, SupportSpace};
 
 use super::cull::{Boxes, RowSupports};
@@ -93,7 +93,11 @@ impl RowTrees {
                 // Here a row that is not listed would count as zero, and leave the others out.
                 Rule::Never | Rule::OnlyZero => false,
             };
-            let tree = self.trees[table.index()].get_or_init(|| RowTree::new(supports, active));
+            let place = &self.trees[table.index()];
+            let tree = match place.get() {
+                Some(tree) => tree,
+                None => watch::stoppable(|| place.get_or_init(|| RowTree::new(supports, active)))?,
+            };
             let most = active.len() / 8;
             let reached = |most| tree.reached(bounds, most, |position| reaches(supports, active, position));
             if let Some(positions) = reached(most.min(FEW)) {

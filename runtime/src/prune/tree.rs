@@ -12,6 +12,8 @@
 
 use std::ops::Range;
 
+use jbt_ir::watch;
+
 use super::cull::RowSupports;
 use crate::boxes::Box3;
 use crate::morton::morton;
@@ -39,7 +41,11 @@ const NOTHING: Box3 = Box3 { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 
 impl RowTree {
     /// The tree of these active rows, at least one.
     pub(super) fn new(supports: &RowSupports, active: &[u32]) -> Self {
-        let middles: Vec<[f32; 3]> = active.iter().map(|&row| middle(&supports.reach_box(row))).collect();
+        let middle_of = |&row: &u32| {
+            watch::look();
+            middle(&supports.reach_box(row))
+        };
+        let middles: Vec<[f32; 3]> = active.iter().map(middle_of).collect();
         let is_finite = |middle: &&[f32; 3]| middle.iter().all(|side| side.is_finite());
         let around = middles
             .iter()
@@ -47,14 +53,17 @@ impl RowTree {
             .fold(NOTHING, |hull, &at| union(&hull, &Box3 { low: at, high: at }));
         let mut places: Vec<(u64, u32)> =
             middles.iter().zip(0..).map(|(middle, position)| (code(middle, &around), position)).collect();
-        places.par_sort_unstable_by_key(|&place| place);
+        scatter(|_| places.par_sort_unstable_by_key(|&place| place));
         let order = places.into_iter().map(|(_, position)| position).collect();
         let mut tree = Self { order, levels: Vec::new() };
         let mut count = active.len().div_ceil(ROWS);
         loop {
             tree.levels.push(vec![NOTHING; count]);
             let level = tree.levels.len() - 1;
-            (0..count).for_each(|index| tree.fit(level, index, supports, active));
+            for index in 0..count {
+                watch::look();
+                tree.fit(level, index, supports, active);
+            }
             if count <= CHILDREN {
                 return tree;
             }

@@ -61,12 +61,12 @@ impl WinnerTree {
         let row = |&position: &u32| active[position as usize] as usize;
         let mut levels = vec![Vec::with_capacity(2 * numbers.len())];
         for plane in &numbers {
-            let ends = order.par_chunks(ROWS).map(|rows| {
+            let ends = |rows: &[u32]| {
                 rows.iter()
                     .map(|position| plane[row(position)])
                     .fold(NOTHING, |[low, high], number| [low.min(number), high.max(number)])
-            });
-            let ends: Vec<[f32; 2]> = ends.collect();
+            };
+            let ends: Vec<[f32; 2]> = scatter(|_| order.par_chunks(ROWS).map(ends).collect());
             levels[0].extend([0, 1].map(|end| ends.iter().map(|ends| ends[end]).collect()));
         }
         while levels[levels.len() - 1].first().map_or(0, Vec::len) > CHILDREN {
@@ -181,6 +181,6 @@ fn order(numbers: &[Vec<f32>], active: &[u32]) -> Vec<u32> {
     };
     let mut places: Vec<(u64, u32)> =
         active.iter().zip(0..).map(|(&row, position)| (code(row), position)).collect();
-    places.par_sort_unstable_by_key(|&place| place);
+    scatter(|_| places.par_sort_unstable_by_key(|&place| place));
     places.into_iter().map(|(_, position)| position).collect()
 }

@@ -45,7 +45,7 @@ pub fn develop(
         }
     };
     let width = width as usize;
-    film.par_chunks(width).zip(rows.par_chunks_mut(width)).enumerate().for_each(develop_row);
+    scatter(|_| film.par_chunks(width).zip(rows.par_chunks_mut(width)).enumerate().for_each(develop_row));
     (Picture::new(width as u32, height, rows).expect("a film has a pixel at least"), range)
 }
 

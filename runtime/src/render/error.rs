@@ -6,6 +6,7 @@ use jbt_model::diagnostic::Diagnostics;
 use super::camera::CameraError;
 use crate::boxes::Box3;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::job::JobError;
 use crate::solid::BoundsError;
 use crate::trace::TraceError;
 
@@ -95,6 +96,12 @@ pub enum RenderError {
     /// It was told to stop.
     #[error("the picture was cancelled")]
     Cancelled,
+}
+
+impl JobError for RenderError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
 }
 
 impl Classified for RenderError {

@@ -201,7 +201,9 @@ impl<'a> Frame<'a> {
             let met = cast(self, &rays)?.met;
             Ok(met.iter().map(|met| dot(met.position, up)).fold(f64::INFINITY, f64::min))
         };
-        let rows: Vec<f64> = (0..SCOUTS).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
+        let rows: Vec<f64> = scatter(|watches| {
+            (0..SCOUTS).into_par_iter().map(|row| watches.hold(|| scouted(row))).collect::<Result<_, _>>()
+        })?;
         let lowest = rows.into_iter().fold(f64::INFINITY, f64::min);
         Ok(if lowest.is_finite() { lowest } else { bottom })
     }
@@ -225,7 +227,9 @@ impl<'a> Frame<'a> {
                 .collect();
             Ok(cast(self, &rays)?.met.iter().map(|met| met.position).collect())
         };
-        let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
+        let seen: Vec<Vec<Vector>> = scatter(|watches| {
+            (0..rows).into_par_iter().map(|row| watches.hold(|| scouted(row))).collect::<Result<_, _>>()
+        })?;
         let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
         self.camera = self.view.camera(aspect, points, self.renderer.tree().orientation())?;

@@ -152,11 +152,9 @@ fn sorted(mut mask: u32, entered: &EightLanes) -> ([u8; WIDE], usize) {
 impl Hierarchy {
     /// The hierarchy of a mesh's triangles; `None` without triangles.
     pub fn new(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
-        let made: Vec<(TriangleCluster, Corners)> = triangles
-            .par_chunks(WIDE)
-            .with_min_len(1024)
-            .map(|some| TriangleCluster::new(positions, some))
-            .collect();
+        let cluster = |some: &[[u32; 3]]| TriangleCluster::new(positions, some);
+        let made: Vec<(TriangleCluster, Corners)> =
+            scatter(|_| triangles.par_chunks(WIDE).with_min_len(1024).map(cluster).collect());
         let (clusters, mut boxes): (Vec<_>, Vec<_>) = made.into_iter().unzip();
         let mut levels = Vec::new();
         while !boxes.is_empty() {

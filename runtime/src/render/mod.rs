@@ -180,7 +180,9 @@ fn expose(frame: &Frame<'_>, film: &mut [Gathered], telling: &mut Telling<'_>) -
             breath.take()?;
             tile::expose(frame, place)
         };
-        let tiles: Vec<Tile> = some.par_iter().map(expose).collect::<Result<_, _>>()?;
+        let tiles: Vec<Tile> = scatter(|watches| {
+            some.par_iter().map(|place| watches.hold(|| expose(place))).collect::<Result<_, _>>()
+        })?;
         for (place, tile) in some.iter().zip(tiles) {
             for (row, pixels) in (place.y..).zip(tile.pixels.chunks(place.width as usize)) {
                 film[row as usize * width + place.x as usize..][..pixels.len()].copy_from_slice(pixels);

@@ -89,7 +89,7 @@ impl<'a> MeshRaster<'a> {
             let from = sub(position.map(f64::from), camera.eye);
             [dot(from, camera.right), dot(from, camera.up), -dot(from, camera.back)]
         };
-        let vertices: Vec<Vector> = positions.par_iter().with_min_len(SOME).map(seen).collect();
+        let vertices: Vec<Vector> = scatter(|_| positions.par_iter().with_min_len(SOME).map(seen).collect());
         let largest = vertices.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         let unit = if largest > 0.0 { largest } else { 1.0 };
         let vertices: Vec<Vector> = vertices.into_iter().map(|vertex| scale(vertex, 1.0 / unit)).collect();
@@ -120,13 +120,12 @@ impl<'a> MeshRaster<'a> {
                 (across[0]..across[1] + 1).map(move |column| (row * columns + column) as u32)
             })
         };
-        let runs: Vec<Vec<[u32; 2]>> = (0..self.triangles.len().div_ceil(SOME))
-            .into_par_iter()
-            .map(|run| {
-                let numbers = run * SOME..((run + 1) * SOME).min(self.triangles.len());
-                numbers.flat_map(|number| places(number).map(move |tile| [tile, number as u32])).collect()
-            })
-            .collect();
+        let of_run = |run: usize| -> Vec<[u32; 2]> {
+            let numbers = run * SOME..((run + 1) * SOME).min(self.triangles.len());
+            numbers.flat_map(|number| places(number).map(move |tile| [tile, number as u32])).collect()
+        };
+        let runs: Vec<Vec<[u32; 2]>> =
+            scatter(|_| (0..self.triangles.len().div_ceil(SOME)).into_par_iter().map(of_run).collect());
         let mut starts = vec![0; columns * tiles[1] as usize + 1];
         for &[tile, _] in runs.iter().flatten() {
             starts[tile as usize + 1] += 1;

@@ -112,8 +112,10 @@ fn of_tiles<T: Send>(
             breath.take()?;
             work(tile, &tiles[tile])
         };
-        let tiles_now = (first..first + some.len()).into_par_iter();
-        let made: Vec<T> = tiles_now.map(work).collect::<Result<_, _>>()?;
+        let made: Vec<T> = scatter(|watches| {
+            let tiles_now = (first..first + some.len()).into_par_iter();
+            tiles_now.map(|tile| watches.hold(|| work(tile))).collect::<Result<_, _>>()
+        })?;
         all.extend(made);
         if !telling.tell(all.len() as f32 / tiles.len() as f32) {
             return Err(RenderError::Cancelled);
@@ -247,8 +249,8 @@ impl<'a> PictureSheet<'a> {
             let mut beside = beside.into_iter().flatten().filter_map(|other| self.seen.get(other));
             beside.any(|other| self.seen[index].breaks(other))
         };
-        let is_break: Vec<bool> =
-            (0..self.seen.len()).into_par_iter().with_min_len(4096).map(breaks).collect();
+        let all = 0..self.seen.len();
+        let is_break: Vec<bool> = scatter(|_| all.into_par_iter().with_min_len(4096).map(breaks).collect());
         let found = of_tiles(&self.tiles, (telling, end), |tile, area| {
             let is_near = |&[x, y]: &[u32; 2]| {
                 let columns = x.saturating_sub(BESIDE)..(x + BESIDE + 1).min(width as u32);

@@ -44,10 +44,9 @@ impl LightSum {
 pub fn smooth(seen: &[SeenPoint], mut lights: Vec<Light>, width: usize) -> Vec<Light> {
     span!("smooth");
     for (step, halving) in PASSES {
-        let rows: Vec<Vec<Light>> = (0..seen.len() / width)
-            .into_par_iter()
-            .map(|row| smooth_row(seen, &lights, width, row, (step, halving)))
-            .collect();
+        let smooth = |row| smooth_row(seen, &lights, width, row, (step, halving));
+        let rows: Vec<Vec<Light>> =
+            scatter(|_| (0..seen.len() / width).into_par_iter().map(smooth).collect());
         lights = rows.concat();
     }
     lights

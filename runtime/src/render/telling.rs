@@ -14,6 +14,7 @@ pub struct Telling<'h> {
     /// Where the present stage begins and ends.
     span: [f32; 2],
     alive: bool,
+    pulse: Pulse,
 }
 
 impl<'h> Telling<'h> {
@@ -23,7 +24,7 @@ impl<'h> Telling<'h> {
     /// [`RenderError::Cancelled`].
     pub fn new(hook: Hook<'h>) -> Result<Self, RenderError> {
         let alive = hook(0.0);
-        let telling = Self { hook, last: 0.0, span: [0.0, 1.0], alive };
+        let telling = Self { hook, last: 0.0, span: [0.0, 1.0], alive, pulse: Pulse::new() };
         if alive { Ok(telling) } else { Err(RenderError::Cancelled) }
     }
 
@@ -41,9 +42,10 @@ impl<'h> Telling<'h> {
     pub fn tell(&mut self, part: f32) -> bool {
         let [begin, end] = self.span;
         let part = begin + (end - begin) * part.clamp(0.0, 1.0);
-        if self.alive && part > self.last {
-            self.last = part;
-            self.alive = (self.hook)(part);
+        // Also where nothing is done that counts, the hook is asked.
+        if self.alive && (part > self.last || self.pulse.is_due()) {
+            self.last = self.last.max(part);
+            self.alive = (self.hook)(self.last);
         }
         self.alive
     }

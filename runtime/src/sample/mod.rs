@@ -34,7 +34,7 @@ use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::mesh::Lattice;
 use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
@@ -95,6 +95,12 @@ pub enum SampleError {
 impl From<Cancelled> for SampleError {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+impl JobError for SampleError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
     }
 }
 
@@ -237,8 +243,10 @@ impl Sampler {
                 progress.add(share)?;
                 Ok::<_, SampleError>(block)
             };
-            let blocks = some.par_iter().map_init(usize::default, sample);
-            let blocks: Vec<Block> = blocks.collect::<Result<_, _>>()?;
+            let blocks: Vec<Block> = scatter(|watches| {
+                let sample = |at_once: &mut usize, some: &_| watches.hold(|| sample(at_once, some));
+                some.par_iter().map_init(usize::default, sample).collect::<Result<_, _>>()
+            })?;
             blocks.into_iter().for_each(&mut *take);
         }
         Ok(progress.finish()?)

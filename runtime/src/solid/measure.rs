@@ -25,7 +25,7 @@ use crate::boxes::Box3;
 use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
-use crate::job::{Hook, Job};
+use crate::job::{Hook, Job, JobError};
 use crate::polygonize::Fineness;
 use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
@@ -157,6 +157,12 @@ pub enum MeasureError {
     Cancelled,
 }
 
+impl JobError for MeasureError {
+    fn told(self) -> Self {
+        if self.kind() == ErrorKind::Cancelled { Self::Cancelled } else { self }
+    }
+}
+
 impl Classified for MeasureError {
     fn kind(&self) -> ErrorKind {
         match self {
@@ -229,13 +235,13 @@ impl Solid {
         let normals = self.normals()?;
         let leaves: Vec<(&DivisionNode<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
-        let pieces: Vec<MeasurePiece> = leaves
-            .par_iter()
-            .map(|(node, region)| {
-                progress.add(share)?;
-                self.piece(normals, &node.bounds, region).map_err(MeasureError::Eval)
-            })
-            .collect::<Result<_, _>>()?;
+        let piece = |(node, region): &(&DivisionNode<()>, &Region)| {
+            progress.add(share)?;
+            self.piece(normals, &node.bounds, region).map_err(MeasureError::Eval)
+        };
+        let pieces: Vec<MeasurePiece> = scatter(|watches| {
+            leaves.par_iter().map(|leaf| watches.hold(|| piece(leaf))).collect::<Result<_, _>>()
+        })?;
         let empty = Measures { region: bounds, cell, ..Measures::default() };
         Ok(self.sum(empty, &division, &pieces))
     }

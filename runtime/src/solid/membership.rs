@@ -17,6 +17,7 @@ use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 use super::{Solid, SolidBatch, center, cut};
 use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
+use crate::parallel::{join, scatter};
 use crate::points::Points;
 use crate::prune::Region;
 
@@ -186,10 +187,12 @@ impl MembershipQuestion<'_> {
         let (order, rest) = order.split_at_mut(middle);
         let (answers, others) = answers.split_at_mut(middle);
         // As deep as the number of points has binary digits.
-        let (below, above) = crate::parallel::join(
-            || self.group(Some(&region), order, answers),
-            || self.group(Some(&region), rest, others),
-        );
+        let (below, above) = scatter(|watches| {
+            join(
+                || watches.hold(|| self.group(Some(&region), order, answers)),
+                || watches.hold(|| self.group(Some(&region), rest, others)),
+            )
+        });
         below.and(above)
     }
 

@@ -126,6 +126,27 @@ fn files_are_opened_at_three_doors() {
     }
 }
 
+/// What a thread does for somebody else while it waits must not be stopped by who waits.
+#[test]
+fn work_is_given_to_threads_by_one_word() {
+    let gives = ["into_par_iter()", ".par_iter()", ".par_chunks(", ".par_sort_", " join("];
+    let mut seen = 0;
+    for (path, text) in sources("runtime") {
+        if path.ends_with("parallel.rs") || !text.contains("use crate::parallel::") {
+            continue;
+        }
+        let code: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        // `fn join(` of a file's own is no join of threads.
+        let is_own = code.iter().any(|line| line.contains("fn join("));
+        let gives = gives.iter().filter(|word| !(is_own && **word == " join("));
+        let given: Vec<&&str> = gives.filter(|word| code.iter().any(|line| line.contains(**word))).collect();
+        seen += usize::from(!given.is_empty());
+        let scatters = given.is_empty() || code.iter().any(|line| line.contains("scatter(|"));
+        assert!(scatters, "{} has {given:?} without `scatter`", path.display());
+    }
+    assert!(seen > 20, "{seen} files give work to threads");
+}
+
 #[test]
 fn every_file_says_what_it_is() {
     for name in CRATES {

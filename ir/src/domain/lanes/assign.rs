@@ -14,6 +14,7 @@ use crate::function::InstKind;
 
 use super::place::ScratchPlace;
 use super::schedule::{Event, InstRange, Schedule};
+use crate::watch::look;
 
 /// The places of all values.
 pub(super) struct Places {
@@ -48,7 +49,7 @@ pub(super) fn assign(schedule: &Schedule<'_>) -> Places {
 fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
     let function = schedule.function;
     for data in function.insts.values() {
-        crate::watch::look();
+        look();
         let bits = match data.kind {
             InstKind::Constant(number) => number.to_bits(),
             InstKind::BitsConstant(bits) => bits,
@@ -61,6 +62,7 @@ fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
     }
     places.splats = places.constants.len();
     for event in &schedule.events {
+        look();
         match *event {
             Event::Inst(inst) => match function.insts[inst].kind {
                 InstKind::Constant(_) | InstKind::BitsConstant(_) => {}
@@ -90,7 +92,7 @@ fn assign_slot(schedule: &Schedule<'_>, places: &mut Places, values: &[Value]) {
 
 /// Linear scan over the hulls of the classes.
 fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Places) {
-    let mut hulls: HashMap<Value, InstRange> = HashMap::new();
+    let mut hulls: Vec<Option<InstRange>> = vec![None; schedule.function.values.len()];
     let blocks = || {
         schedule
             .function
@@ -99,18 +101,21 @@ fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Pla
             .filter(|value| schedule.holder[value.index()] == *value && !schedule.splat[value.index()])
     };
     for value in blocks() {
+        look();
         let range = schedule.live[value.index()];
-        let hull = hulls.entry(classes.root(value)).or_insert(range);
+        let hull = hulls[classes.root(value).index()].get_or_insert(range);
         hull.start = hull.start.min(range.start);
         hull.end = hull.end.max(range.end);
     }
-    let mut order: Vec<(InstRange, Value)> = hulls.into_iter().map(|(value, range)| (range, value)).collect();
+    let roots = schedule.function.values.keys().zip(hulls);
+    let mut order: Vec<(InstRange, Value)> = roots.filter_map(|(root, hull)| Some((hull?, root))).collect();
     order.sort_unstable_by_key(|&(range, value)| (range.start, value));
 
     let mut free: BinaryHeap<Reverse<usize>> = BinaryHeap::new();
     let mut busy: BinaryHeap<Reverse<(usize, usize)>> = BinaryHeap::new();
-    let mut register_of: HashMap<Value, usize> = HashMap::new();
+    let mut register_of: Vec<u32> = vec![0; schedule.function.values.len()];
     for (range, root) in order {
+        look();
         while let Some(&Reverse((end, register))) = busy.peek()
             && end <= range.start
         {
@@ -125,10 +130,12 @@ fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Pla
             |Reverse(register)| register,
         );
         busy.push(Reverse((range.end, register)));
-        register_of.insert(root, register);
+        register_of[root.index()] = register as u32;
     }
     for value in blocks() {
-        places.places[value.index()] = ScratchPlace::block(register_of[&classes.root(value)]);
+        look();
+        let register = register_of[classes.root(value).index()];
+        places.places[value.index()] = ScratchPlace::block(register as usize);
     }
 }
 

@@ -19,6 +19,7 @@ use crate::entity::{Entity, Inst, Value};
 use crate::function::{Fold, Function, InstKind};
 
 use super::pairs::{FusedPair, MOST_OPERANDS, find};
+use crate::watch::look;
 
 /// What happens at a position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -173,6 +174,7 @@ impl<'a> Pairing<'a> {
             }
         };
         for inst in function.insts.keys() {
+            look();
             let result = function.insts[inst].results.first();
             if result.is_none_or(|result| holder[result.index()] == *result) {
                 read(function.operands(inst));
@@ -196,6 +198,7 @@ impl<'a> Pairing<'a> {
     fn run(&mut self, events: &mut [Event]) {
         let mut first_of: Vec<(Inst, Inst)> = Vec::new();
         for event in events.iter() {
+            look();
             if let Event::Inst(inst) = *event
                 && let Some(first) = self.pair(inst)
             {
@@ -205,6 +208,7 @@ impl<'a> Pairing<'a> {
         let mut order: Vec<Event> = Vec::with_capacity(events.len());
         let mut first_of = first_of.into_iter().peekable();
         for event in events.iter() {
+            look();
             let Event::Inst(inst) = *event else {
                 order.push(*event);
                 continue;
@@ -260,6 +264,7 @@ impl<'a> Pairing<'a> {
 fn holders(function: &Function, events: &[Event]) -> Vec<Value> {
     let mut holder: Vec<Value> = function.values.keys().collect();
     for event in events {
+        look();
         let Event::Inst(inst) = *event else { continue };
         let data = &function.insts[inst];
         if let InstKind::Op { op, args } = &data.kind
@@ -276,6 +281,7 @@ fn splats(function: &Function, holder: &[Value]) -> Vec<bool> {
     let mut reaches: Vec<(Value, Value)> = Vec::new();
     let mut found: Vec<Value> = Vec::new();
     for data in function.insts.values() {
+        look();
         match &data.kind {
             InstKind::Input(_) => found.push(data.results[0]),
             InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
@@ -290,16 +296,29 @@ fn splats(function: &Function, holder: &[Value]) -> Vec<bool> {
             }
         }
     }
+    // By value: where those begin that it reaches.
+    let mut starts = vec![0_u32; function.values.len() + 1];
     for (from, to) in &mut reaches {
         (*from, *to) = (holder[from.index()], holder[to.index()]);
+        starts[from.index() + 1] += 1;
     }
-    reaches.sort_unstable();
+    for value in 0..function.values.len() {
+        starts[value + 1] += starts[value];
+    }
+    let (mut next, mut reached) = (starts.clone(), vec![Value::new(0); reaches.len()]);
+    for (from, to) in reaches {
+        look();
+        let place = &mut next[from.index()];
+        reached[*place as usize] = to;
+        *place += 1;
+    }
 
     let mut splat = vec![true; function.values.len()];
     while let Some(value) = found.pop() {
+        look();
         if std::mem::replace(&mut splat[value.index()], false) {
-            let first = reaches.partition_point(|&(from, _)| from < value);
-            found.extend(reaches[first..].iter().take_while(|&&(from, _)| from == value).map(|&(_, to)| to));
+            let [first, end] = [0, 1].map(|of| starts[value.index() + of] as usize);
+            found.extend(&reached[first..end]);
         }
     }
     splat
@@ -314,7 +333,7 @@ fn ranges(function: &Function, events: &[Event], holder: &[Value]) -> Vec<InstRa
         open: Vec::new(),
     };
     for (position, event) in events.iter().enumerate() {
-        crate::watch::look();
+        look();
         match *event {
             Event::Inst(inst) => {
                 let data = &function.insts[inst];

@@ -58,17 +58,20 @@ pub(super) fn find<F: Field>(
     let group = 64;
     let total = places.len().div_ceil(group);
     MeshStage::Thin.begin(progress)?;
-    let groups = places.par_chunks(group).zip(regions.par_chunks(group));
-    let found = groups.map(|(places, regions)| {
+    let of_group = |(places, regions): (&[[u32; 3]], &[F::Region])| {
         let (mut found, mut near) = (ChunkFindings::default(), 0);
         for (&place, region) in places.iter().zip(regions) {
             search.chunk((edge, place), region, &mut near, &mut found)?;
             progress.breathe()?;
         }
         progress.add(1.0 / total as f64)?;
-        Ok(found)
-    });
-    for found in found.collect::<Result<Vec<ChunkFindings>, MeshError<F::Error>>>()? {
+        Ok::<_, MeshError<F::Error>>(found)
+    };
+    let found: Vec<ChunkFindings> = scatter(|watches| {
+        let groups = places.par_chunks(group).zip(regions.par_chunks(group));
+        groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
+    })?;
+    for found in found {
         report.missed += found.missed.len() as u64;
         report.unproven += found.unproven;
         report.boxes += found.boxes;

@@ -71,8 +71,10 @@ struct ShredProbe {
 impl<F: Field> Looked<'_, F> {
     /// The blocks in which the surface is in shreds.
     pub(super) fn shreds(&self) -> Result<Vec<Alarm>, MeshError<F::Error>> {
-        let blocks = (0..self.crossed.len()).into_par_iter().with_min_len(256);
-        blocks.filter_map(|block| self.block(block).transpose()).collect()
+        scatter(|watches| {
+            let blocks = (0..self.crossed.len()).into_par_iter().with_min_len(256);
+            blocks.filter_map(|block| watches.hold(|| self.block(block)).transpose()).collect()
+        })
     }
 
     fn block(&self, block: usize) -> Result<Option<Alarm>, MeshError<F::Error>> {
