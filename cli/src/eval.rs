@@ -78,10 +78,11 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let tree = scene.check_for(&arguments.query)?;
     let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query.query)?;
     // Owners are numbered by the nodes of the scene, and not of what answers for it.
-    let whole = scene.check()?;
+    let whole =
+        arguments.query.text_column().map(|name| scene.check().map(|whole| (name, whole))).transpose()?;
     let answers = AnswerTable {
         evaluator: &evaluator,
-        paths: arguments.query.text_column().map(|name| OwnerColumn::new(name, &evaluator, &whole)),
+        paths: whole.as_ref().map(|(name, whole)| OwnerColumn::new(name, &evaluator, whole)),
     };
     let threads = Threads::new(arguments.threads);
     if is_standard(&arguments.points) {

@@ -19,7 +19,7 @@ pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
         (None, Some(cells)) => Fineness::Resolution(cells),
         (None, None) => Fineness::default(),
     };
-    Ok(Polygonize { region: arguments.region, fineness, verify: false, thin_parts: true, sharp: false })
+    Ok(Polygonize { region: arguments.region, fineness, verify: false, thin_parts: true, sharp: true })
 }
 
 /// The box of a lattice about the origin of a model, in the world.

@@ -1,4 +1,4 @@
-//! Whether compiling is still wanted: what lowers, changes and emits code looks every now and then, and
+//! Whether work is still wanted: what lowers, changes, emits and runs code looks every now and then, and
 //! stops where it is.
 //!
 //! ```text

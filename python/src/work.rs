@@ -161,8 +161,7 @@ impl<'py> CallEffort<'py> {
             Arc::new(Arrival { result: Mutex::new(None), bell: Condvar::new() });
         let (mine, watched) = (Arc::clone(&arrival), watch.clone());
         pool(self.py, self.threads)?.spawn(move || {
-            let stoppable = || watched.token.watches(|| work(&watched));
-            mine.put(catch_unwind(AssertUnwindSafe(stoppable)));
+            mine.put(catch_unwind(AssertUnwindSafe(|| work(&watched))));
         });
         let mut told = -1.0;
         let mut stopped: Option<(PyErr, u32)> = None;

@@ -42,6 +42,21 @@ impl<T: Copy + PartialOrd> Box3<T> {
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
+    /// The smallest box that has both in it.
+    #[must_use]
+    pub(crate) fn joined(&self, other: &Self) -> Self
+    where
+        T: Copy,
+    {
+        let ends = |axis: usize| {
+            let low = if other.low[axis] < self.low[axis] { other.low[axis] } else { self.low[axis] };
+            let high = if other.high[axis] > self.high[axis] { other.high[axis] } else { self.high[axis] };
+            (low, high)
+        };
+        let ends = [ends(0), ends(1), ends(2)];
+        Self { low: ends.map(|(low, _)| low), high: ends.map(|(_, high)| high) }
+    }
+
     /// Whether two boxes have a point in common.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {

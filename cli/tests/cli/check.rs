@@ -58,7 +58,10 @@ fn check_reports_for_machines() {
     assert_eq!((&model["leaves"], &model["instances"], &model["iso"]), (&json!(2), &json!(3), &json!(0.5)));
     assert_eq!(model["parameters"], json!({ "bulge": 0.6 }));
     assert_eq!(model["bounds"].as_array().map(Vec::len), Some(6));
-    assert_eq!(model["attributes"][1], json!({ "name": "rough", "width": 1, "mixing": "dominant" }));
+    assert_eq!(
+        model["attributes"][1],
+        json!({ "name": "rough", "width": 1, "mixing": "dominant", "direction": false })
+    );
     assert_eq!(files[0]["model"], json!(null));
     // Warnings are there, too, and do not count as errors.
     let odd = folder.with("odd.blob", BLOB.replace("ChildrenCount=2", "ChildrenCount=3"));

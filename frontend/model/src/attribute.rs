@@ -79,10 +79,10 @@ impl AttributeGroup {
     ///
     /// ```
     /// use jbt_model::{attribute::AttributeGroup, builder::point, model::Model, walk::walk};
-    /// let beam = point([0; 3], 1).attribute("grain", &[1, 0, 0]).rotate_z(90);
+    /// let beam = point([0; 3], 1).attribute("grain", &[1, 0, 0]).scale(2);
     /// let groups = vec![AttributeGroup::color(), AttributeGroup::direction("grain", [0.0; 3])];
     /// let tree = Model { attributes: groups, ..Model::new(beam) }.check()?;
-    /// assert_eq!(walk(&tree, [0.0; 3]).attributes[1], [0.0, 1.0, 0.0]);
+    /// assert_eq!(walk(&tree, [0.0; 3]).attributes[1], [2.0, 0.0, 0.0]);
     /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
     /// ```
     #[must_use]

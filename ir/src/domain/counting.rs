@@ -146,7 +146,8 @@ pub fn ops_per_row(function: &Function) -> Vec<u64> {
 #[must_use]
 pub fn of_selection(per_row: &[u64], selection: &Selection) -> u64 {
     let of = |&table: &Table| {
-        let each = per_row[table.index()];
+        // A selection of another function is refused by whoever runs it.
+        let each = per_row.get(table.index()).copied().unwrap_or(0);
         if each == 0 { 0 } else { each.saturating_mul(selection.active(table).len() as u64) }
     };
     selection.present().iter().map(of).fold(0, u64::saturating_add)

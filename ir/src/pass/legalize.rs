@@ -2,7 +2,8 @@
 //!
 //! The transcendentals become the steps of [`crate::math`], written through the builder, so every engine runs
 //! the same steps. `stop_gradient` matters to the gradient only, which has been taken by now: it becomes its
-//! operand.
+//! operand. Slopes of values, as directions need them under warps, are written out, if the gradient has not
+//! done that.
 
 use super::gradient::slopes;
 use crate::builder::FunctionBuilder;

@@ -85,7 +85,7 @@ pub const ROW_INTERVAL: Pass = Pass {
 pub const PIPELINE: &[Pass] = &[
     Pass {
         name: "legalize",
-        what: "Expands the transcendentals into the ops that machines have, and drops `stop_gradient`.",
+        what: "Expands transcendentals into the ops that machines have, writes slopes out, drops `stop_gradient`.",
         run: legalize,
     },
     Pass {

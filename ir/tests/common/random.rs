@@ -124,8 +124,9 @@ impl Generator {
     /// A random op on random values.
     fn step(&mut self) {
         let mut op = Op::ALL[self.random.usize(0..Op::ALL.len())];
-        if op == Op::LowEnd {
-            // Its range is an end, and encloses nothing.
+        if matches!(op, Op::LowEnd | Op::SlopeX | Op::SlopeY | Op::SlopeZ) {
+            // The range of an end encloses nothing, and a slope is one of the whole function, which no op
+            // computes by itself.
             op = Op::StopGradient;
         }
         let mut args: Vec<Value> = op

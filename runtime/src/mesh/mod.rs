@@ -98,8 +98,8 @@ use vertex::side::SharpVertex;
 ///
 /// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, x
 /// lowest); triangles are in the order of the last cell that they touch. A vertex stays within its cell, off
-/// its sides; so positions differ, unless [`MeshReport::crowded`] is set. One on an edge of the surface may be
-/// a little beside its cell.
+/// its sides; so positions differ, unless [`MeshReport::crowded`] is set. One on an edge of the surface may
+/// be a little beside its cell.
 ///
 /// # Errors
 /// See [`MeshError`].
@@ -128,7 +128,7 @@ pub(crate) fn extract_hooked<F: Field>(
     let progress = Progress::new(hook, EACH);
     let division =
         divide::divide(field, lattice.axes(), (options, DivisionScope::Everything), MAX_BRICKS, &progress)?;
-    let (mesh, mut report, (crossings, sharp)) = polygonize(field, &division, options, &progress)?;
+    let Polygons { mesh, mut report, crossings, sharp } = polygonize(field, &division, options, &progress)?;
     meshed(&report);
     if options.thin_parts {
         report.thin =
@@ -156,13 +156,21 @@ fn creases(mesh: &Mesh, sharp: &[SharpVertex], corners: &[SideCorner]) -> Crease
     creases
 }
 
-/// Meshes the bricks of a lattice. Also returns the crossings, and the vertices on edges.
+/// A mesh, and what the search for thin parts asks.
+struct Polygons {
+    mesh: Mesh,
+    report: MeshReport,
+    crossings: Crossings,
+    sharp: Vec<SharpVertex>,
+}
+
+/// Meshes the bricks of a lattice.
 fn polygonize<F: Field>(
     field: &F,
     division: &BrickDivision<F::Region>,
     options: &Options,
     progress: &Progress<'_>,
-) -> Result<(Mesh, MeshReport, (Crossings, Vec<SharpVertex>)), MeshError<F::Error>> {
+) -> Result<Polygons, MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
     let samples = sample::sample(field, (bricks, regions), None, progress)?;
     let mut crossings = crossing::find(bricks, &samples, options.iso);
@@ -200,5 +208,5 @@ fn polygonize<F: Field>(
     let corners = surface::crease(bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
     mesh.creases = creases(&mesh, &done.sharp, &corners);
     surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
-    Ok((mesh, report, (crossings, done.sharp)))
+    Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
 }

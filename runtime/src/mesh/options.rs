@@ -26,7 +26,7 @@ pub struct Options {
     /// and does not change the mesh.
     pub thin_parts: bool,
     /// Whether vertices go to edges and corners of the surface, where the field knows any: see
-    /// [`Field::decided`](super::Field::decided).
+    /// [`Field::decided`](super::Field::decided). It needs at least one pull.
     pub sharp: bool,
 }
 

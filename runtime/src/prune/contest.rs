@@ -109,8 +109,14 @@ impl Contests {
             let ContestKind::All(start) = contest.kind else { continue };
             let place = contest.groups.iter().position(|group| group.rows && group.table == table);
             let Some(place) = place else { continue };
-            let new = || WinnerTree::new(&self.compiler, lowered, &contest.groups[place], all.active(table));
-            return match trees[place].get_or_init(new) {
+            let known = trees[place].get();
+            let known = known.unwrap_or_else(|| {
+                // Made outside of the lock: while it is made, this thread may take work that asks for it.
+                let group = &contest.groups[place];
+                let made = WinnerTree::new(&self.compiler, lowered, group, all.active(table));
+                trees[place].get_or_init(|| made)
+            });
+            return match known {
                 Some(tree) => tree.winners(bounds, (contest.extreme, start)),
                 None => Ok(nothing),
             };

@@ -96,7 +96,11 @@ impl RowTrees {
             let place = &self.trees[table.index()];
             let tree = match place.get() {
                 Some(tree) => tree,
-                None => watch::stoppable(|| place.get_or_init(|| RowTree::new(supports, active)))?,
+                // Made outside of the lock: while it is made, this thread may take work that asks for it.
+                None => {
+                    let made = watch::stoppable(|| RowTree::new(supports, active))?;
+                    place.get_or_init(|| made)
+                }
             };
             let most = active.len() / 8;
             let reached = |most| tree.reached(bounds, most, |position| reaches(supports, active, position));

@@ -17,6 +17,7 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use jbt_ir::limits::{MAX_GAP_PAIRS, MAX_GAP_WORK};
+use jbt_ir::watch;
 
 use super::halves::{halves, ranges};
 use super::{Solid, SolidBatch, center, cut};
@@ -29,6 +30,9 @@ const CUT_WORK: u64 = 1 << 10;
 
 /// Cuts of one solid in search of a point inside. Thin ones have few.
 const MAX_FIRST_CUTS: usize = 1 << 12;
+
+/// Pairs that are popped between two looks whether the answer is wanted.
+const LOOK: u32 = 1 << 10;
 
 /// A distance between bounds, in units of the model.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -131,6 +135,9 @@ impl<'a> GapTree<'a> {
     fn find(&mut self) -> Result<bool, EvalError> {
         let mut open = BinaryHeap::from([HighBox { highest: f32::INFINITY, number: 0 }]);
         for _ in 0..MAX_FIRST_CUTS {
+            if self.work >= MAX_GAP_WORK {
+                break;
+            }
             let Some(HighBox { number, .. }) = open.pop() else { return Ok(false) };
             for part in self.parts(number)?.unwrap_or_default() {
                 let GapBox { highest, inside, .. } = self.boxes[part as usize];
@@ -239,8 +246,13 @@ fn search(
         (high, count)
     };
     let (mut high, mut pairs) = meet(trees, [0, 0], &mut open);
+    let mut turns = 0;
     while let Some(GapPair { low, boxes, .. }) = open.pop() {
         let work: u64 = trees.iter().map(|tree| tree.work).sum();
+        turns += 1;
+        if turns % LOOK == 0 {
+            watch::go_on()?;
+        }
         if high - low <= tolerance || pairs >= MAX_GAP_PAIRS || work >= MAX_GAP_WORK {
             return Ok(low);
         }

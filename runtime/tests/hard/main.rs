@@ -130,12 +130,19 @@ fn normals(mesh: &Mesh, is_left_out: impl Fn(usize) -> bool) -> (usize, usize) {
             *areas += area;
         }
     }
+    // At an edge of the surface triangles may be folded, and outweigh the others.
+    let mut is_at_edge = vec![false; mesh.positions.len()];
+    let is_on_edge = |vertex: &u32| mesh.creases.vertices.binary_search(vertex).is_ok();
+    for triangle in mesh.triangles.iter().filter(|triangle| triangle.iter().any(is_on_edge)) {
+        triangle.iter().for_each(|&vertex| is_at_edge[vertex as usize] = true);
+    }
     let (mut inward, mut needles) = (0, 0);
     let sums = sums.into_iter().zip(&mesh.normals).enumerate().filter(|&(vertex, _)| !is_left_out(vertex));
-    for (_, ((sum, areas), normal)) in sums {
-        if dot(sum, sum).sqrt() < NEEDLE * areas {
+    for (vertex, ((sum, areas), normal)) in sums {
+        let is_inward = dot(sum, normal.map(f64::from)) <= 0.0;
+        if dot(sum, sum).sqrt() < NEEDLE * areas || is_inward && is_at_edge[vertex] {
             needles += 1;
-        } else if dot(sum, normal.map(f64::from)) <= 0.0 {
+        } else if is_inward {
             inward += 1;
         }
     }

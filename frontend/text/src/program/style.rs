@@ -6,6 +6,7 @@
 //! override style oak { child }
 //! ```
 
+use std::collections::HashSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -71,6 +72,7 @@ impl<'a> Parser<'a> {
     /// What stands between the braces of a style, and the closing one.
     fn style_values(&mut self, style: &str) -> Vec<(Written, Span)> {
         let mut values: Vec<(Written, Span)> = Vec::new();
+        let mut known: HashSet<(bool, String)> = HashSet::new();
         loop {
             if self.accept(b'}').is_some() {
                 return values;
@@ -89,7 +91,8 @@ impl<'a> Parser<'a> {
             };
             let Some(written) = given else { return values };
             let span = Span::new(start.start, self.previous_end());
-            if values.iter().any(|(other, _)| other.given() == written.given()) {
+            let given = written.given().map(|(is_constant, name)| (is_constant, name.to_owned()));
+            if given.is_some_and(|given| !known.insert(given)) {
                 let what = self.source(span).to_owned();
                 let message = format!("`{STYLE} {}` gives `{}` a second time", clip(style), clip(&what));
                 self.report(|| Diagnostic::error(Some(span), message));

@@ -116,10 +116,12 @@ impl Tangent {
         result
     }
 
-    /// A component of a tangent, as a value that has none.
+    /// A component of a tangent, as a value that has none. As in the gradient, adding +0 removes the sign of a
+    /// zero, which may depend on rows that add nothing.
     fn slope_along(&mut self, a: Dual, axis: usize) -> Dual {
         let components = self.derivative(|d| d.components(a.slope));
-        Self::still(components[axis].unwrap_or_else(|| self.builder.constant(0.0)))
+        let zero = self.builder.constant(0.0);
+        Self::still(components[axis].map_or(zero, |component| self.builder.add(component, zero)))
     }
 
     fn with_slope(&mut self, value: Value, slope: impl FnOnce(&mut Self) -> Slope) -> Dual {

@@ -16,7 +16,7 @@ use super::quadric::{self, EdgeAim};
 
 /// How far the points are from the vertex, in cells: at first as far as the vertex may be off, then close.
 const WAYS: [f64; 3] = [1.0 / 2.0, 1.0 / 4.0, 1.0 / 16.0];
-/// How far a vertex may go from its first place, in cells.
+/// How far a vertex may go at each look, in cells.
 const FARTHEST: f64 = 0.25;
 
 /// Steps of a vertex that does not reach its edge.
@@ -68,15 +68,17 @@ impl<'c, 'a> Curved<'c, 'a> {
         Self { candidate, planes, is_unmet: false }
     }
 
-    /// For each side a point close to the vertex, on the way to the side's plane.
+    /// For each side a point close to the vertex, on the way to the side's plane, within the cell and the
+    /// vertex's home: there the region knows the field.
     fn beside(&self, way: f64) -> impl Iterator<Item = [f32; 3]> {
         let from = self.candidate.position.map(f64::from);
-        let size = f64::from(self.candidate.sheet.size);
+        let Candidate { sheet, home, .. } = &*self.candidate;
+        let (size, reach) = (f64::from(sheet.size), sheet.cell.joined(home));
         self.planes.iter().map(move |plane| {
             let along: [f64; 3] = std::array::from_fn(|axis| f64::from(plane.place[axis]) - from[axis]);
             let part = way * size / dot(along, along).sqrt();
             let part = if part < 1.0 { part } else { 1.0 };
-            std::array::from_fn(|axis| (from[axis] + part * along[axis]) as f32)
+            clamped(std::array::from_fn(|axis| from[axis] + part * along[axis]), reach)
         })
     }
 
