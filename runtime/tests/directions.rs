@@ -1,4 +1,5 @@
-//! Directions: attributes that turn with maps and warps, by every engine, against closed forms and the oracle.
+//! Directions: attributes that turn with maps and warps, by every engine, against closed forms and the
+//! oracle.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Styles: attributes and constants that have a name together, how they are read and printed, and what is wrong
-//! with them.
+//! Styles: attributes and constants that have a name together, how they are read and printed, and what is
+//! wrong with them.
 
 use std::sync::Arc;
 

@@ -116,8 +116,8 @@ impl Tangent {
         result
     }
 
-    /// A component of a tangent, as a value that has none. As in the gradient, adding +0 removes the sign of a
-    /// zero, which may depend on rows that add nothing.
+    /// A component of a tangent, as a value that has none. As in the gradient, adding +0 removes the sign of
+    /// a zero, which may depend on rows that add nothing.
     fn slope_along(&mut self, a: Dual, axis: usize) -> Dual {
         let components = self.derivative(|d| d.components(a.slope));
         let zero = self.builder.constant(0.0);
