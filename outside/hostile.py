@@ -227,7 +227,6 @@ def threejs():
     yield "escapes", b'{"type":"' + b"\\ud800" * 100_000 + b'"}'
     yield "one key, many times", b'{"type":"RootNode",' + b'"children":[],' * 100_000 + b'"iso":1}'
     yield "a hundred thousand points", (root % (64, 1, ",".join([good] * 20_000))).encode()
-    yield "a style of constants", text("style a = {" + "".join(f" constant c{at} 1" for at in range(100_000)) + " }\n" + ball)
     yield "a number of a megabyte", (root % (64, 1, leaf % (1, "9" * MANY))).encode()
     yield "null", b"null"
     twist = '{"type":"TwistNode","twist_amout":1,"axis_x":0,"axis_y":1,"axis_z":0,"children":['
@@ -427,6 +426,7 @@ def jbt():
     yield "twists", text("twist axis z rate 1 { " * 5000 + ball + " }" * 5000)
     yield "shells", text("shell 0.1 { " * 5000 + ball + " }" * 5000)
     yield "a string without end", text('let a = "' + "x" * MANY)
+    yield "a style of constants", text("style a = {" + "".join(f" constant c{at} 1" for at in range(100_000)) + " }\n" + ball)
     yield "wide attributes", text("".join(f"attribute a{at} 64\n" for at in range(100)) + ball)
     yield "a number of a megabyte", text("point { radius " + "9" * MANY + " }")
 
