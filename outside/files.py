@@ -179,7 +179,8 @@ class Judge:
         self.check(told["closed"], file, "jbt says that it is not closed")
         merged = mesh.copy()
         merged.merge_vertices(merge_tex=True, merge_norm=True)
-        for name, one in [("as loaded", mesh), ("merged", merged)]:
+        # Vertices on edges are there once for each side.
+        for name, one in [("merged", merged)] if told["sharp_vertices"] else [("as loaded", mesh), ("merged", merged)]:
             self.check(one.is_watertight, file, f"{name}: not watertight")
             self.check(one.is_winding_consistent, file, f"{name}: wound in two ways")
         if told["volume"] is None:
@@ -203,6 +204,9 @@ class Judge:
         palettes = {}
         for form in FORMATS:
             file = f"{name}.{form}"
+            # Colours are compared without edges: there vertices are apart by format, and trimesh joins some of them.
+            self.run(scene, file, *options, "--sharp", "off")
+            cut = self.load(file)
             told = self.run(scene, file, *options)
             mesh = self.load(file)
             self.check(told["up"] == UP[form], file, f"{told['up']} is up")
@@ -211,8 +215,8 @@ class Judge:
             if form in OTHERS:
                 self.expected[file] = {"bounds": told["bounds"], "up": told["up"], "color": color}
             # trimesh drops the colours of OBJ and PLY with texture coordinates.
-            if form != "stl" and (color is not None or mesh.visual.kind == "vertex"):
-                palettes[file] = self.colored(file, mesh)
+            if form != "stl" and (color is not None or cut.visual.kind == "vertex"):
+                palettes[file] = self.colored(file, cut)
         # Half of the last of eight bits is 0.0045 of linear light, where it is most.
         for file, palette in palettes.items():
             if color is not None:
