@@ -200,6 +200,12 @@ macro_rules! op_table {
                 self.flags().expanded
             }
 
+            /// Whether it is the slope of a value: one of the whole function, which no op has alone.
+            #[must_use]
+            pub const fn is_slope(self) -> bool {
+                matches!(self, Self::SlopeX | Self::SlopeY | Self::SlopeZ)
+            }
+
             /// Whether swapping the first two operands gives the same bits (a NaN for a NaN).
             #[must_use]
             pub const fn commutes(self) -> bool {

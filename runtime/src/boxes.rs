@@ -42,21 +42,6 @@ impl<T: Copy + PartialOrd> Box3<T> {
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
-    /// The smallest box that has both in it.
-    #[must_use]
-    pub(crate) fn joined(&self, other: &Self) -> Self
-    where
-        T: Copy,
-    {
-        let ends = |axis: usize| {
-            let low = if other.low[axis] < self.low[axis] { other.low[axis] } else { self.low[axis] };
-            let high = if other.high[axis] > self.high[axis] { other.high[axis] } else { self.high[axis] };
-            (low, high)
-        };
-        let ends = [ends(0), ends(1), ends(2)];
-        Self { low: ends.map(|(low, _)| low), high: ends.map(|(_, high)| high) }
-    }
-
     /// Whether two boxes have a point in common.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
@@ -65,6 +50,14 @@ impl<T: Copy + PartialOrd> Box3<T> {
 }
 
 impl Box3 {
+    /// The smallest box that has both in it. What is not a number in one is that of the other.
+    pub(crate) fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
+            high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])),
+        }
+    }
+
     /// The smallest box that holds some points; `None` if there are none, or if a coordinate is not finite.
     #[must_use]
     pub(crate) fn around(points: &[[f32; 3]]) -> Option<Self> {

@@ -51,7 +51,7 @@ pub(super) fn slopes(function: &Function) -> Cow<'_, Function> {
 /// The value whose slope an instruction is.
 fn asks_slope(inst: &InstData) -> Option<Value> {
     match &inst.kind {
-        InstKind::Op { op: Op::SlopeX | Op::SlopeY | Op::SlopeZ, args } => Some(args[0]),
+        InstKind::Op { op, args } if op.is_slope() => Some(args[0]),
         InstKind::Op { .. }
         | InstKind::Input(_)
         | InstKind::Constant(_)
@@ -158,8 +158,7 @@ fn depends_on_point(function: &Function) -> Vec<bool> {
                 InstKind::Input(index) => varies[inst.results[0].index()] = *index < 3,
                 InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
                 InstKind::Op { op, args } => {
-                    let held = matches!(op, Op::StopGradient | Op::SlopeX | Op::SlopeY | Op::SlopeZ)
-                        || op.result() != Type::Real;
+                    let held = *op == Op::StopGradient || op.is_slope() || op.result() != Type::Real;
                     varies[inst.results[0].index()] = !held && args.iter().any(|arg| varies[arg.index()]);
                 }
                 InstKind::Fold(fold) => {

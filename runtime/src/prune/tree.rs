@@ -50,7 +50,7 @@ impl RowTree {
         let around = middles
             .iter()
             .filter(is_finite)
-            .fold(NOTHING, |hull, &at| union(&hull, &Box3 { low: at, high: at }));
+            .fold(NOTHING, |hull, &at| hull.joined(&Box3 { low: at, high: at }));
         let mut places: Vec<(u64, u32)> =
             middles.iter().zip(0..).map(|(middle, position)| (code(middle, &around), position)).collect();
         scatter(|_| places.par_sort_unstable_by_key(|&place| place));
@@ -86,11 +86,11 @@ impl RowTree {
         self.levels[level][index] = if level == 0 {
             let boxes =
                 self.rows(index).iter().map(|&position| supports.reach_box(active[position as usize]));
-            boxes.fold(NOTHING, |hull, other| union(&hull, &other))
+            boxes.fold(NOTHING, |hull, other| hull.joined(&other))
         } else {
             self.levels[level - 1][self.children(level, index)]
                 .iter()
-                .fold(NOTHING, |hull, other| union(&hull, other))
+                .fold(NOTHING, |hull, other| hull.joined(other))
         };
     }
 
@@ -136,13 +136,6 @@ impl RowTree {
 
 fn middle(bounds: &Box3) -> [f32; 3] {
     std::array::from_fn(|axis| 0.5 * bounds.low[axis] + 0.5 * bounds.high[axis])
-}
-
-fn union(a: &Box3, b: &Box3) -> Box3 {
-    Box3 {
-        low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
-        high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
-    }
 }
 
 /// The place of a point on the Morton curve through a box. What is not finite comes last.

@@ -68,8 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let begin = Instant::now();
     let mut total = Found::default();
     // A slope is one of the whole function, and the reference has none of a value alone.
-    let alone = |op: &&Op| !matches!(op, Op::SlopeX | Op::SlopeY | Op::SlopeZ);
-    for subject in Op::ALL.iter().filter(alone).flat_map(|&op| subjects(op)) {
+    for subject in Op::ALL.iter().filter(|op| !op.is_slope()).flat_map(|&op| subjects(op)) {
         let mut all = Found::default();
         for (name, run) in parts(&subject, stride, triples) {
             if let Some(line) = done.lines().find(|line| line.starts_with(&format!("{name},"))) {

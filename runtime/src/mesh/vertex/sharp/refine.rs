@@ -18,7 +18,6 @@ use super::quadric::{self, EdgeAim};
 const WAYS: [f64; 3] = [1.0 / 2.0, 1.0 / 4.0, 1.0 / 16.0];
 /// How far a vertex may go at each look, in cells.
 const FARTHEST: f64 = 0.25;
-
 /// Steps of a vertex that does not reach its edge.
 const PULLS: usize = 2;
 
