@@ -20,6 +20,7 @@
 //!              those at jumps of the field are put where halved edges say                   (vertex/suspect)
 //!              those that a crease keeps off the surface are brought onto it                (settle)
 //!              those on edges and corners of the surface are put there                      (vertex/sharp)
+//!     fold   = vertices on edges of the surface go back where triangles would be folded            (fold)
 //!     quads  = one for each crossed edge, through the four cells around it,
 //!              split along its shorter diagonal                                             (surface)
 //!     check that the mesh is closed                                                         (check)
@@ -47,6 +48,7 @@ mod crossing;
 mod divide;
 mod error;
 mod field;
+mod fold;
 mod indexed;
 mod lattice;
 pub(crate) mod local;
@@ -89,8 +91,8 @@ use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
 use divide::BrickDivision;
+use fold::{SharpQuad, SideCorner};
 use scope::DivisionScope;
-use surface::SideCorner;
 use vertex::batch::VertexSource;
 use vertex::side::SharpVertex;
 
@@ -141,6 +143,15 @@ pub(crate) fn extract_hooked<F: Field>(
     }
     progress.finish()?;
     Ok((mesh, report))
+}
+
+/// Lets sharp vertices go back where triangles would be folded.
+fn go_back(mesh: &mut Mesh, quads: &[SharpQuad], sharp: &[SharpVertex]) {
+    let positions = &mesh.positions;
+    let moved = fold::unfolded(quads, sharp, |vertex| positions[vertex as usize]);
+    for (place, position) in moved {
+        mesh.positions[sharp[place as usize].vertex as usize] = position;
+    }
 }
 
 /// The sides of vertices, and the corners that show them.
@@ -203,9 +214,10 @@ fn polygonize<F: Field>(
     };
     report.cut_sides.add(boxes.cut);
     crossings.corners = Vec::new();
+    let quads = fold::sharp_quads(bricks, &crossings, &done.sharp, [0; 3]);
+    go_back(&mut mesh, &quads, &done.sharp);
     mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
-    let positions = &mesh.positions;
-    let corners = surface::crease(bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
+    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles);
     mesh.creases = creases(&mesh, &done.sharp, &corners);
     surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
     Ok(Polygons { mesh, report, crossings, sharp: done.sharp })

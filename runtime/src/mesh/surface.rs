@@ -11,7 +11,6 @@ use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
 use super::crossing::Crossings;
 use super::indexed::Mesh;
-use super::vertex::side::SharpVertex;
 
 /// The triangles of all quads, in the order of the cells that own them.
 pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
@@ -56,7 +55,7 @@ struct Corner {
 }
 
 /// The cells of a brick and the cells just below it. Entries of cells that are not crossed are arbitrary.
-struct Around {
+pub(super) struct Around {
     /// x fastest, then y, then z; each begins with the layer below the brick.
     table: Vec<CellVertices>,
     /// Room for the indices of some crossed cells of a brick.
@@ -74,7 +73,7 @@ struct Around {
 }
 
 impl Around {
-    fn new(bricks: &Bricks) -> Self {
+    pub(super) fn new(bricks: &Bricks) -> Self {
         let stride = bricks.stride();
         let steps = [1, stride, stride * stride];
         let table = vec![CellVertices::default(); bricks.table_len()];
@@ -165,6 +164,24 @@ impl Around {
         lows
     }
 
+    /// Visits the quads of a brick: with their places among these, the last cell's place in the table, and
+    /// the vertex of each corner with the number of the crossed edge in its cell.
+    pub(super) fn visit(
+        &mut self,
+        bricks: &Bricks,
+        crossings: &Crossings,
+        brick: usize,
+        mut visit: impl FnMut(usize, usize, [(u32, u32); 4]),
+    ) {
+        let lows = self.find_quads(bricks, crossings, brick);
+        self.fill(bricks, crossings, brick, lows);
+        for quad in 0..crossings.quads[brick + 1] - crossings.quads[brick] {
+            let code = self.quads[quad];
+            let (at, turn) = ((code / 8) as usize, self.turns[(code % 8) as usize]);
+            visit(quad, at - self.first, turn.map(|corner| (self.vertex(at, corner), corner.place / 2)));
+        }
+    }
+
     /// The vertex of the cell at a place of the table on one of its crossed edges.
     #[inline(always)]
     fn vertex(&self, at: usize, corner: Corner) -> u32 {
@@ -181,15 +198,15 @@ const LAST: u16 = 0b100_1001_0010_0100;
 fn split_quads(around: &Around, positions: &[[f32; 3]], pairs: &mut [[[u32; 3]; 2]]) {
     for (pair, &quad) in pairs.iter_mut().zip(&around.quads) {
         let (at, turn) = ((quad / 8) as usize, around.turns[(quad % 8) as usize]);
-        *pair = halves(turn.map(|corner| around.vertex(at, corner)), positions);
+        *pair = halves(turn.map(|corner| around.vertex(at, corner)), |vertex| positions[vertex as usize]);
     }
 }
 
 /// Splits a quad along its shorter diagonal, or from its first vertex if they are equal.
 #[inline(always)]
-fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
+pub(super) fn halves([p, q, r, s]: [u32; 4], at: impl Fn(u32) -> [f32; 3]) -> [[u32; 3]; 2] {
     let distance = |p: u32, q: u32| {
-        let (p, q) = (positions[p as usize], positions[q as usize]);
+        let (p, q) = (at(p), at(q));
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(p[axis]) - f64::from(q[axis]));
         x * x + y * y + z * z
     };
@@ -272,107 +289,6 @@ pub(crate) fn judged(normal: [f32; 3], sum: [f64; 3]) -> [f32; 3] {
     } else {
         normal
     }
-}
-
-/// A corner of a triangle that shows a side of a sharp vertex.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct SideCorner {
-    /// Three times the triangle plus the corner.
-    pub(crate) corner: u32,
-    /// The sharp vertex, by its place among them.
-    pub(crate) sharp: usize,
-    /// Its side.
-    pub(crate) side: usize,
-}
-
-/// Divides the quads at sharp vertices so that no triangle is folded, if that can be, and tells which corners
-/// show which sides. `sharp` is ascending. Bricks that have quads know their neighbours below.
-pub(crate) fn crease(
-    bricks: &Bricks,
-    crossings: &Crossings,
-    sharp: &[SharpVertex],
-    positions: &[[f32; 3]],
-    triangles: &mut [[u32; 3]],
-) -> Vec<SideCorner> {
-    if sharp.is_empty() {
-        return Vec::new();
-    }
-    let mut places = vec![0_u32; crossings.vertex_count()];
-    (1..).zip(sharp).for_each(|(place, sharp)| places[sharp.vertex as usize] = place);
-    let is_there = |brick: usize| {
-        let range = [0, 1].map(|n| crossings.vertices[brick + n] as u32);
-        let from = sharp.partition_point(|sharp| sharp.vertex < range[0]);
-        sharp.get(from).is_some_and(|sharp| sharp.vertex < range[1])
-    };
-    let has_sharp: Vec<bool> = (0..bricks.len()).map(is_there).collect();
-    let mut corners = Vec::new();
-    let mut around = Around::new(bricks);
-    for brick in 0..bricks.len() {
-        let range = crossings.quads[brick]..crossings.quads[brick + 1];
-        let near = (0..8_u8).any(|below| {
-            let steps = [0, 1, 2].map(|axis| -((below >> axis & 1) as i8));
-            let other = bricks.neighbours[brick][direction(steps)];
-            if below == 0 { has_sharp[brick] } else { other != NONE && has_sharp[other as usize] }
-        });
-        if range.is_empty() || !near {
-            continue;
-        }
-        let lows = around.find_quads(bricks, crossings, brick);
-        around.fill(bricks, crossings, brick, lows);
-        for (quad, index) in range.enumerate() {
-            let code = around.quads[quad];
-            let (at, turn) = ((code / 8) as usize, around.turns[(code % 8) as usize]);
-            let vertices = turn.map(|corner| around.vertex(at, corner));
-            let sides = [0, 1, 2, 3].map(|n| {
-                let place = places[vertices[n] as usize].checked_sub(1)? as usize;
-                Some((place, sharp[place].side(turn[n].place / 2)))
-            });
-            if sides == [None; 4] {
-                continue;
-            }
-            let pair = &mut triangles[2 * index..2 * index + 2];
-            pair.copy_from_slice(&folded_least(vertices, sides, sharp, positions));
-            for (n, triangle) in pair.iter().enumerate() {
-                for (corner, vertex) in triangle.iter().enumerate() {
-                    let of = vertices.iter().position(|other| other == vertex);
-                    if let Some((sharp, side)) = of.and_then(|of| sides[of]) {
-                        let corner = (3 * (2 * index + n) + corner) as u32;
-                        corners.push(SideCorner { corner, sharp, side });
-                    }
-                }
-            }
-        }
-    }
-    corners
-}
-
-/// The halves of a quad: along the edge of the surface, if two opposite corners are on it, else along the
-/// shorter diagonal; but along the other one if that makes both triangles look outwards.
-fn folded_least(
-    [p, q, r, s]: [u32; 4],
-    sides: [Option<(usize, usize)>; 4],
-    sharp: &[SharpVertex],
-    positions: &[[f32; 3]],
-) -> [[u32; 3]; 2] {
-    let mut outward = [0.0; 3];
-    for (place, side) in sides.into_iter().flatten() {
-        let normal = sharp[place].sides[side].normal;
-        outward.iter_mut().zip(normal).for_each(|(sum, c)| *sum += f64::from(c));
-    }
-    let usual = match sides.map(|side| side.is_some()) {
-        [true, false, true, false] => [[q, r, p], [p, r, s]],
-        [false, true, false, true] => [[p, q, s], [s, q, r]],
-        _ => halves([p, q, r, s], positions),
-    };
-    let first = usual.iter().all(|triangle| triangle.contains(&p) && triangle.contains(&r));
-    let other = if first { [[p, q, s], [s, q, r]] } else { [[q, r, p], [p, r, s]] };
-    let looks_out = |halves: &[[u32; 3]; 2]| {
-        halves.iter().all(|triangle| {
-            let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));
-            (0..3).map(|axis| area[axis] * outward[axis]).sum::<f64>() > 0.0
-        })
-    };
-    if !looks_out(&usual) && looks_out(&other) { other } else { usual }
 }
 
 /// The bricks that have triangles of some vertices, both ascending. A quad belongs to the last cell around

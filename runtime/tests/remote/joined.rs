@@ -67,6 +67,24 @@ fn walls_and_creases() {
     check("walls", &tree(text), &settings(None, 90), 32);
 }
 
+/// Many small turned cubes: vertices on edges go back where triangles are folded, at seams too.
+#[test]
+fn turned_cubes() {
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut cube = || {
+        let [x, y, z] = [0; 3].map(|_| 4.0 * random.f64() - 2.0);
+        let [a, b, c] = [0; 3].map(|_| 2.0 * random.f64() - 1.0);
+        format!(
+            "translate ({x} {y} {z}) {{ rotate axis ({a} {b} {c}) degrees {} {{
+            expression within (-0.4 -0.4 -0.4) to (0.4 0.4 0.4) {{ 0.5 + 0.2 - max(abs(x), abs(y), abs(z)) }} }} }}",
+            180.0 * random.f64()
+        )
+    };
+    let cubes: Vec<String> = (0..150).map(|_| cube()).collect();
+    let text = format!("jbt 1 union {{ {} }}", cubes.join(" "));
+    check("cubes", &tree(&text), &settings(None, 80), 32);
+}
+
 /// The mesh of parts is one of several fields.
 #[test]
 fn blocks_are_of_one_solid() {

@@ -14,6 +14,7 @@
 //! |---|---|
 //! | flips of faces | along chains of pinched faces: up to the reach, or the block has to be asked again |
 //! | triangles, which are split by positions | one below |
+//! | vertices on edges, which [go back](super::fold) where triangles are folded | one more on each side |
 //! | normals that triangles decide | one above |
 
 mod bytes;
@@ -34,13 +35,13 @@ use super::crossing::{self, Crossings, UnflippedCells};
 use super::divide::{self, BrickDivision};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
+use super::fold::{self, SideCorner};
 use super::indexed::{Attribute, Mesh};
 use super::lattice::Lattice;
 use super::options::Options;
 use super::report::Sides;
 use super::sample::{self, SampleWindow};
 use super::scope::DivisionScope;
-use super::surface::SideCorner;
 use super::vertex::batch::VertexSource;
 use super::vertex::side::SharpVertex;
 use super::{surface, vertex};
@@ -49,9 +50,11 @@ use crate::progress::{EACH, Progress};
 
 use cells::{cell_of, is_in};
 
-/// Cells beyond a block that are sampled at first: those that have vertices of its triangles, and one more,
-/// at which chains of flips are seen.
+/// Cells beyond a block whose vertices are made: those of its triangles, and those that decide whether these
+/// go back.
 const NEAR: usize = 2;
+/// Cells beyond a block that are sampled at first: one more, at which chains of flips are seen.
+const SAMPLED: usize = NEAR + 1;
 
 /// A vertex by its cell in the whole lattice, and its place among the vertices of that cell.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -133,9 +136,9 @@ pub(crate) fn extract<F: Field>(
     let scope = DivisionScope::Cells(known);
     let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    let near = block.cells(lattice, 1);
+    let near = block.cells(lattice, NEAR);
     // As few cells as there can be, unless a chain of flips leads through them; rows may reach farther.
-    let tries = if reach > LatticeBlock::REACH { &[reach][..] } else { &[NEAR, reach] };
+    let tries = if reach > LatticeBlock::REACH { &[reach][..] } else { &[SAMPLED, reach] };
     let mut found = None;
     for known in tries.iter().map(|&more| block.cells(lattice, more)) {
         let window = Some(SampleWindow::of_cells(known));
@@ -150,16 +153,19 @@ pub(crate) fn extract<F: Field>(
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     keep(&bricks, &mut found, near);
     let mut crossings = found.numbered(&bricks, flipped);
-    leave_quads_out(&bricks, &mut crossings, own);
     if u32::try_from(crossings.vertex_count()).is_err() {
         return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
     }
     let source =
         VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
+    // Quads with all of their corners.
+    let first = near[0].map(|low| if low == 0 { 0 } else { low + 1 });
+    super::go_back(&mut mesh, &fold::sharp_quads(&bricks, &crossings, &done.sharp, first), &done.sharp);
+    leave_quads_out(&bricks, &mut crossings, own);
     mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
-    let positions = &mesh.positions;
-    let corners = surface::crease(&bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
+    let quads = fold::sharp_quads(&bricks, &crossings, &done.sharp, [0; 3]);
+    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles);
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =

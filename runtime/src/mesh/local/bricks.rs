@@ -141,3 +141,8 @@ pub(super) fn beside(place: BrickPlace, steps: [i32; 3]) -> BrickPlace {
 pub(super) fn octet(place: BrickPlace, side: i32) -> impl Iterator<Item = BrickPlace> {
     (0..8).map(move |axes: i32| beside(place, [0, 1, 2].map(|axis| side * (axes >> axis & 1))))
 }
+
+/// A brick and the 26 around it.
+pub(super) fn around(place: BrickPlace) -> impl Iterator<Item = BrickPlace> {
+    (0..27).map(move |n: i32| beside(place, [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1]))
+}

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::bricks::{BrickMesh, BrickPlace, KeptBrick, octet};
+use super::bricks::{BrickMesh, BrickPlace, KeptBrick, around, octet};
 use super::join::Join;
 use super::renewal::Renewal;
 use crate::mesh::indexed::{Attribute, Mesh};
@@ -47,6 +47,8 @@ struct Commit {
     of: FxHashMap<BrickPlace, BrickChange>,
     /// Normals of old bricks as they were.
     normals: Vec<(BrickPlace, Vec<[f32; 3]>)>,
+    /// Positions of old bricks with sharp vertices as they were.
+    positions: Vec<(BrickPlace, Vec<[f32; 3]>)>,
     /// The bricks whose vertices have moved, or have other numbers, and those that are no more.
     moved: Vec<BrickPlace>,
 }
@@ -69,6 +71,7 @@ impl BrickMesh {
         for brick in new {
             self.put(brick, &mesh, &mut commit);
         }
+        self.unfold(&mut commit);
         let join = self.moved_bricks(&commit);
         self.join(&join, &mut commit);
         self.finish(commit)
@@ -176,6 +179,9 @@ impl BrickMesh {
                     triangles: false,
                 };
                 commit.normals.push((place, before));
+                if !old.sharp.is_empty() || !kept.sharp.is_empty() {
+                    commit.positions.push((place, self.buffers.positions[slot.range()].to_vec()));
+                }
             }
         }
         let is_shape_kept = stays
@@ -190,6 +196,38 @@ impl BrickMesh {
             Some(_) => drop(commit.of.insert(place, change)),
         }
         self.bricks.insert(place, kept);
+    }
+
+    /// Puts sharp vertices where they belong that have moved bricks around them.
+    fn unfold(&mut self, commit: &mut Commit) {
+        let is_sharp = |place: &BrickPlace| self.bricks.get(place).is_some_and(|one| !one.sharp.is_empty());
+        let targets: FxHashSet<BrickPlace> =
+            commit.moved.iter().flat_map(|&place| around(place)).filter(is_sharp).collect();
+        if targets.is_empty() && commit.positions.is_empty() {
+            return;
+        }
+        let known = |places: FxHashSet<BrickPlace>| -> FxHashSet<BrickPlace> {
+            places.into_iter().filter(|place| self.bricks.contains_key(place)).collect()
+        };
+        let own = known(targets.iter().flat_map(|&place| octet(place, 1)).collect());
+        let all = known(targets.iter().flat_map(|&place| around(place)).collect());
+        let join = Join { bricks: self.in_order(all.into_iter()), own };
+        let added: FxHashSet<BrickPlace> = commit.changes.added.iter().copied().collect();
+        for (place, vertex, position) in self.sharp_places(&targets, &join) {
+            let old = &mut self.buffers.positions[vertex];
+            if old.map(f32::to_bits) != position.map(f32::to_bits) {
+                *old = position;
+                commit.moved.push(place);
+                if !added.contains(&place) {
+                    commit.of.entry(place).or_default().positions = true;
+                }
+            }
+        }
+        for (place, before) in std::mem::take(&mut commit.positions) {
+            let now = &self.buffers.positions[self.bricks[&place].vertices.range()];
+            let same = same_bits(before.as_flattened(), now.as_flattened());
+            commit.of.entry(place).or_default().positions = !same;
+        }
     }
 
     /// The bricks whose triangles may have changed: those with other vertices, and those above them.

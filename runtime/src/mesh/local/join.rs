@@ -3,8 +3,9 @@
 use rustc_hash::FxHashSet;
 
 use super::bricks::{BrickCorner, BrickMesh, BrickPlace, KeptBrick, linked, octet};
-use crate::mesh::brick::place as number_place;
+use crate::mesh::brick::{Bricks, place as number_place};
 use crate::mesh::crossing::Crossings;
+use crate::mesh::fold;
 use crate::mesh::report::Sides;
 use crate::mesh::surface;
 use crate::mesh::vertex::side::SharpVertex;
@@ -15,6 +16,18 @@ pub(super) struct Join {
     pub(super) bricks: Vec<([u32; 3], BrickPlace)>,
     /// Those that get triangles.
     pub(super) own: FxHashSet<BrickPlace>,
+}
+
+/// Bricks that are kept apart, as the parts of one mesh.
+struct JoinedBricks {
+    bricks: Bricks,
+    crossings: Crossings,
+    /// Its vertices in the buffers.
+    names: Vec<u32>,
+    /// Its sharp vertices, ascending.
+    sharp: Vec<SharpVertex>,
+    /// For each of them, its brick, and its place among those of the brick.
+    homes: Vec<(BrickPlace, usize)>,
 }
 
 impl KeptBrick {
@@ -34,11 +47,8 @@ impl KeptBrick {
 }
 
 impl BrickMesh {
-    /// The triangles of some bricks, as indices of the buffers, and the corners that show sides of vertices.
-    pub(super) fn triangles(&self, join: &Join) -> Vec<(BrickPlace, Vec<[u32; 3]>, Vec<BrickCorner>)> {
-        if join.own.is_empty() {
-            return Vec::new();
-        }
+    /// Some bricks as the parts of one mesh.
+    fn gathered(&self, join: &Join) -> JoinedBricks {
         let mut crossings = Crossings {
             cells: Vec::new(),
             corners: Vec::new(),
@@ -49,27 +59,59 @@ impl BrickMesh {
             cut: Sides::default(),
             is_open: false,
         };
-        let (mut positions, mut names, mut quads) = (Vec::new(), Vec::new(), 0);
+        let (mut names, mut quads) = (Vec::new(), 0);
         let (mut sharp, mut homes) = (Vec::new(), Vec::new());
         for (_, place) in &join.bricks {
             let brick = &self.bricks[place];
-            let first = positions.len() as u32;
+            let first = names.len() as u32;
             sharp.extend(
                 brick.sharp.iter().map(|one| SharpVertex { vertex: first + one.vertex, ..one.clone() }),
             );
             homes.extend((0..brick.sharp.len()).map(|number| (*place, number)));
             crossings.cells.extend_from_slice(&brick.cells);
             crossings.starts.push(crossings.cells.len());
-            positions.extend_from_slice(&self.buffers.positions[brick.vertices.range()]);
             names.extend(brick.vertices.range().map(|vertex| vertex as u32));
-            crossings.vertices.push(positions.len());
+            crossings.vertices.push(names.len());
             quads += if join.own.contains(place) { brick.quads } else { 0 };
             crossings.quads.push(quads);
         }
         let places = join.bricks.iter().map(|&(place, _)| place).collect();
         let bricks = linked(self.edge, self.lattice.axes(), places);
+        JoinedBricks { bricks, crossings, names, sharp, homes }
+    }
+
+    /// Where sharp vertices of some bricks belong: where they were put, or back from there, if triangles are
+    /// folded. `join` has the quads around them. The vertices are indices of the buffers.
+    pub(super) fn sharp_places(
+        &self,
+        targets: &FxHashSet<BrickPlace>,
+        join: &Join,
+    ) -> Vec<(BrickPlace, usize, [f32; 3])> {
+        let joined = self.gathered(join);
+        let JoinedBricks { bricks, crossings, names, sharp, homes } = &joined;
+        let mut positions: Vec<[f32; 3]> =
+            names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
+        sharp.iter().for_each(|one| positions[one.vertex as usize] = one.placed);
+        let quads = fold::sharp_quads(bricks, crossings, sharp, [0; 3]);
+        for (place, position) in fold::unfolded(&quads, sharp, |vertex| positions[vertex as usize]) {
+            positions[sharp[place as usize].vertex as usize] = position;
+        }
+        let all = sharp.iter().zip(homes).filter(|(_, (home, _))| targets.contains(home));
+        let at = |vertex: u32| (names[vertex as usize] as usize, positions[vertex as usize]);
+        all.map(|(one, &(home, _))| (home, at(one.vertex).0, at(one.vertex).1)).collect()
+    }
+
+    /// The triangles of some bricks, as indices of the buffers, and the corners that show sides of vertices.
+    pub(super) fn triangles(&self, join: &Join) -> Vec<(BrickPlace, Vec<[u32; 3]>, Vec<BrickCorner>)> {
+        if join.own.is_empty() {
+            return Vec::new();
+        }
+        let JoinedBricks { bricks, crossings, names, sharp, homes } = self.gathered(join);
+        let positions: Vec<[f32; 3]> =
+            names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
         let mut triangles = surface::triangles(&bricks, &crossings, &positions);
-        let corners = surface::crease(&bricks, &crossings, &sharp, &positions, &mut triangles);
+        let quads = fold::sharp_quads(&bricks, &crossings, &sharp, [0; 3]);
+        let corners = fold::crease(&quads, &sharp, &positions, &mut triangles);
         let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
             let mine = &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]];
             let first = 6 * crossings.quads[brick] as u32;

@@ -5,6 +5,7 @@
 //!           faces are flipped anew along chains of pinched faces that touch them       (flips)
 //!           vertices of these bricks, and of others with another flip
 //! commit:   vertices go to the slots of their bricks                                   (commit, slots)
+//!           vertices on edges go back where triangles are folded, around such bricks   (join)
 //!           triangles of bricks with other vertices, and of those just above them      (join)
 //!           doubtful normals of bricks with other triangles, and of those just below   (join)
 //! ```
@@ -16,6 +17,7 @@
 //! | crossed cells | the field in the closed box of their brick |
 //! | flips of faces | the crossed cells, along a chain of faces that are pinched in both of their cells |
 //! | vertices, attributes | the field in the closed box of their brick, and flips of their own cell |
+//! | where vertices on edges go back to | vertices of their brick and of the 26 bricks around |
 //! | triangles | vertices of their brick and of the seven bricks below |
 //! | normals that triangles decide | triangles of their brick and of the seven bricks above |
 //!

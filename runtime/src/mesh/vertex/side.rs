@@ -5,6 +5,10 @@
 pub(crate) struct SharpVertex {
     /// Its number.
     pub(crate) vertex: u32,
+    /// Where it was put: it [goes back](super::super::fold) if triangles are folded there.
+    pub(crate) placed: [f32; 3],
+    /// The edge of its cell.
+    pub(crate) size: f32,
     /// What meets there.
     pub(crate) sides: Vec<SharpSide>,
     /// Where it would be if edges were cut off, and its unit normal there.

@@ -142,7 +142,13 @@ impl VertexBatch {
             }
             let planes = self.attributes.chunks_exact_mut(self.count);
             planes.zip(&sides[widest].attributes).for_each(|(plane, &value)| plane[vertex] = value);
-            sharp.push(SharpVertex { vertex: vertex as u32, sides, cut });
+            sharp.push(SharpVertex {
+                vertex: vertex as u32,
+                placed: one.position,
+                size: one.sheet.size,
+                sides,
+                cut,
+            });
             first += one.crossings.len();
         }
         Ok(sharp)

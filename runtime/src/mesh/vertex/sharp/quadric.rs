@@ -56,6 +56,9 @@ impl EdgeAim {
 /// Where the planes of the crossings meet: a point, or the line of an edge, nearest to `mean`. `None` if the
 /// planes are nearly one.
 pub(super) fn aim(crossings: &[Crossing], mean: [f64; 3]) -> Option<EdgeAim> {
+    if let &[a, b] = crossings {
+        return aim_at_two(a, b, mean);
+    }
     let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
     for crossing in crossings {
         let n = crossing.normal;
@@ -84,6 +87,27 @@ pub(super) fn aim(crossings: &[Crossing], mean: [f64; 3]) -> Option<EdgeAim> {
     }
 }
 
+/// The same of two planes, whose matrix has the eigenvalues 1 + c, 1 - c and 0, if c is the product of their
+/// unit normals.
+fn aim_at_two(a: Crossing, b: Crossing, mean: [f64; 3]) -> Option<EdgeAim> {
+    let (n, m) = (a.normal, b.normal);
+    let c = dot(n, m);
+    if 1.0 - c.abs() <= LEAST * (1.0 + c.abs()) {
+        return None;
+    }
+    let height = |plane: &Crossing| {
+        let from = std::array::from_fn(|axis| f64::from(plane.place[axis]) - mean[axis]);
+        dot(plane.normal, from)
+    };
+    let [p, q] = [height(&a), height(&b)];
+    let square = 1.0 - c * c;
+    let (along_n, along_m) = ((p - c * q) / square, (q - c * p) / square);
+    let point = [0, 1, 2].map(|axis| mean[axis] + along_n * n[axis] + along_m * m[axis]);
+    let length = square.sqrt();
+    let way = [n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]];
+    Some(EdgeAim::Line(point, way.map(|c| c / length)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,5 +129,28 @@ mod tests {
         assert!(point.iter().zip([0.75, 0.5, 0.3]).all(|(a, b): (&f64, f64)| (a - b).abs() < 1e-12));
         assert!((way[2].abs() - 1.0).abs() < 1e-12);
         assert!(aim(&faces[..1], [0.3; 3]).is_none());
+    }
+
+    /// Each plane given twice has the line that the two alone have.
+    #[test]
+    fn two_planes_have_the_line_of_their_matrix() {
+        for (bend, is_line) in [(0.9, true), (0.3, true), (0.21, true), (0.19, false), (0.0, false)] {
+            let n = [0.48, 0.6, 0.64];
+            let across = [0.8, 0.0, -0.6];
+            let m = std::array::from_fn(|axis| {
+                let bend: f64 = bend;
+                (1.0 - bend * bend).sqrt() * n[axis] + bend * across[axis]
+            });
+            let two = [crossing([0.1, 0.4, 0.3], n), crossing([0.5, 0.2, 0.7], m)];
+            let both = [aim(&two, [0.3; 3]), aim(&[two[0], two[1], two[0], two[1]], [0.3; 3])];
+            match both {
+                [Some(EdgeAim::Line(p, v)), Some(EdgeAim::Line(q, w))] if is_line => {
+                    assert!(p.iter().zip(q).all(|(p, q)| (p - q).abs() < 1e-12), "{p:?} {q:?}");
+                    assert!(dot(v, w).abs() > 1.0 - 1e-12, "{v:?} {w:?}");
+                }
+                [None, None] if !is_line => {}
+                other => panic!("{bend}: {other:?}"),
+            }
+        }
     }
 }
