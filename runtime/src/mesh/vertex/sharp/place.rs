@@ -39,10 +39,10 @@ pub(super) fn place<F: Field>(
     batch: &VertexBatch,
     candidates: &mut Vec<Candidate<'_>>,
 ) -> Result<Option<F::Region>, F::Error> {
-    candidates.retain(|one| one.aim().is_some());
+    let mut aims = Vec::with_capacity(candidates.len());
+    candidates.retain(|one| one.aim().map(|aim| aims.push(aim)).is_some());
     let mut claims = Vec::new();
-    for (n, one) in candidates.iter_mut().enumerate() {
-        let Some(aim) = one.aim() else { continue };
+    for (n, (one, aim)) in candidates.iter_mut().zip(aims).enumerate() {
         let bounds = batch.bounds(one.sheet.start.vertex);
         if let Some(point) = aim.within(bounds) {
             one.put(clamped(point, bounds), bounds);
