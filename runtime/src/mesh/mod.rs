@@ -137,7 +137,7 @@ pub(crate) fn extract_hooked<F: Field>(
     drop((division, crossings, sharp));
     // Otherwise it is known by construction.
     if options.verify {
-        report.closed = is_closed(mesh.positions.len(), &mesh.triangles);
+        report.closed = check::are_closed(mesh.positions.len(), &mesh.triangles, || progress.breathe())?;
     }
     progress.finish()?;
     Ok((mesh, report))
@@ -173,7 +173,7 @@ fn polygonize<F: Field>(
 ) -> Result<Polygons, MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
     let samples = sample::sample(field, (bricks, regions), None, progress)?;
-    let mut crossings = crossing::find(bricks, &samples, options.iso);
+    let mut crossings = crossing::find(bricks, &samples, options.iso, progress)?;
     let field_evaluations = samples.len() as u64;
     drop(samples);
     let count = crossings.vertex_count();
@@ -203,10 +203,10 @@ fn polygonize<F: Field>(
     };
     report.cut_sides.add(boxes.cut);
     crossings.corners = Vec::new();
-    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
-    let positions = &mesh.positions;
-    let corners = surface::crease(bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
+    let (of, go_on) = ((bricks, &crossings), || progress.breathe());
+    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions, go_on)?;
+    let corners = surface::crease(of, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
-    surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
+    surface::repair_normals(&mut mesh, of, &done.doubtful, progress)?;
     Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
 }

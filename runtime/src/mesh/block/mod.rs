@@ -140,7 +140,7 @@ pub(crate) fn extract<F: Field>(
     for known in tries.iter().map(|&more| block.cells(lattice, more)) {
         let window = Some(SampleWindow::of_cells(known));
         let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
-        let looked = crossing::look(&bricks, &samples, options.iso);
+        let looked = crossing::look(&bricks, &samples, options.iso, &progress)?;
         if chain::is_complete(&bricks, &looked, near, known) {
             found = Some(looked);
             break;
@@ -149,7 +149,7 @@ pub(crate) fn extract<F: Field>(
     let Some(mut found) = found else { return Err(MeshError::Reach { reach }) };
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     keep(&bricks, &mut found, near);
-    let mut crossings = found.numbered(&bricks, flipped);
+    let mut crossings = found.numbered(&bricks, flipped, &progress)?;
     leave_quads_out(&bricks, &mut crossings, own);
     if u32::try_from(crossings.vertex_count()).is_err() {
         return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
@@ -157,14 +157,14 @@ pub(crate) fn extract<F: Field>(
     let source =
         VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
-    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
-    let positions = &mesh.positions;
-    let corners = surface::crease(&bricks, &crossings, &done.sharp, positions, &mut mesh.triangles);
+    let (of, go_on) = ((&bricks, &crossings), || progress.breathe());
+    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions, go_on)?;
+    let corners = surface::crease(of, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
-    surface::repair_normals(&mut mesh, &bricks, &crossings, &doubtful);
+    surface::repair_normals(&mut mesh, of, &doubtful, &progress)?;
     progress.finish()?;
     let mut cut_sides = crossings.cut;
     cut_sides.add(boxes.cut);

@@ -1,5 +1,7 @@
 //! Triangles of some bricks, and the normals that triangles decide.
 
+use std::convert::Infallible;
+
 use rustc_hash::FxHashSet;
 
 use super::bricks::{BrickCorner, BrickMesh, BrickPlace, KeptBrick, linked, octet};
@@ -68,8 +70,10 @@ impl BrickMesh {
         }
         let places = join.bricks.iter().map(|&(place, _)| place).collect();
         let bricks = linked(self.edge, self.lattice.axes(), places);
-        let mut triangles = surface::triangles(&bricks, &crossings, &positions);
-        let corners = surface::crease(&bricks, &crossings, &sharp, &positions, &mut triangles);
+        // Old bricks may have gone: nobody stops what puts new ones in their place.
+        let go_on = || Ok::<_, Infallible>(());
+        let Ok(mut triangles) = surface::triangles(&bricks, &crossings, &positions, go_on);
+        let Ok(corners) = surface::crease((&bricks, &crossings), &sharp, &positions, &mut triangles, go_on);
         let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
             let mine = &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]];
             let first = 6 * crossings.quads[brick] as u32;
