@@ -39,10 +39,6 @@ LOCATED = re.compile(
     r":\d+:\d+: (error|limit): |: byte \d+: |error: .*\bbyte \d+|error: (point|.*\bof particle) \d+"
     r"|error: (there are no points|the file (names no root|has no lines|has no solid)|\d+ bytes, which are neither text nor points)"
 )
-# `check` says what each command would say, so it makes programs up to `limits::MAX_VALUES`. This one has two programs of
-# nearly so many values at once, one made of the other, and takes more memory than the others.
-LARGE = {("jbt", "twists")}
-LARGE_MEGABYTES = 240
 
 
 def npy():
@@ -491,8 +487,7 @@ def main():
                 for command in asked:
                     code, message, seconds, memory = launcher.submit(took, [jbt, *command, *options, f"f.{form}"], folder).result()
                     fault = faults(code, message)
-                    is_large = (form, name) in LARGE
-                    if seconds > SECONDS or memory > (LARGE_MEGABYTES if is_large else MEGABYTES):
+                    if seconds > SECONDS or memory > MEGABYTES:
                         fault = fault or f"{seconds:.2f} s, {memory:.0f} MB"
                     if fault:
                         wrong += 1

@@ -30,6 +30,11 @@ const STEP: isize = 1 << 16;
 const SHARE: u64 = 4;
 /// The stack that the first thread has from the beginning where addresses are few: it could not be had later.
 const STACK: usize = 1 << 20;
+/// From so many bytes on, what is asked for has pages of its own, and the system has them again once it is not
+/// needed. By itself glibc raises this number with each such part that is freed, up to 32 MiB: what passes and
+/// stages leave behind then stays with the process.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+const OWN_PAGES: i32 = 4 << 20;
 /// The exit code of a limit.
 const CODE: u8 = 3;
 
@@ -48,12 +53,28 @@ pub fn limit(bytes: Option<u64>) {
 
 /// Takes what cannot be asked for later. Comes first.
 pub fn prepare() {
+    give_back();
     let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
     let addresses = limits.lines().find(|line| line.starts_with("Max address space"));
     if addresses.is_some_and(|line| !line.contains("unlimited  ")) {
         take_stack();
     }
 }
+
+/// Large parts go back to the system.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn give_back() {
+    unsafe extern "C" {
+        fn mallopt(parameter: i32, value: i32) -> i32;
+    }
+    const M_MMAP_THRESHOLD: i32 = -3;
+    // SAFETY: it is glibc's, with this signature, and there is one thread. A refusal changes nothing.
+    unsafe { mallopt(M_MMAP_THRESHOLD, OWN_PAGES) };
+}
+
+/// Large parts go back to the system, by its own rule.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+const fn give_back() {}
 
 /// Lets the system find pages for the stack.
 #[inline(never)]

@@ -7,6 +7,7 @@
 
 use std::fmt;
 use std::marker::PhantomData;
+use std::num::NonZeroU32;
 use std::ops::{Index, IndexMut};
 
 use smallvec::SmallVec;
@@ -19,24 +20,41 @@ pub trait Entity: Copy + Eq {
     fn index(self) -> usize;
 }
 
+/// One and an index: a name that may be missing takes four bytes, as one that is there.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub(crate) struct OneAndIndex(NonZeroU32);
+
+impl OneAndIndex {
+    /// For this index.
+    pub(crate) fn of(index: usize) -> Self {
+        let number = u32::try_from(index).ok().and_then(|index| NonZeroU32::MIN.checked_add(index));
+        Self(number.expect("limits::MAX_VALUES keeps every index far below 2^32"))
+    }
+
+    /// The index.
+    pub(crate) const fn index(self) -> usize {
+        (self.0.get() - 1) as usize
+    }
+}
+
 macro_rules! entity {
     ($(#[$doc:meta])* $name:ident, $prefix:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub struct $name(u32);
+        pub struct $name(OneAndIndex);
 
         impl Entity for $name {
             fn new(index: usize) -> Self {
-                Self(u32::try_from(index).expect("limits::MAX_VALUES keeps every index far below 2^32"))
+                Self(OneAndIndex::of(index))
             }
             fn index(self) -> usize {
-                self.0 as usize
+                self.0.index()
             }
         }
 
         impl fmt::Display for $name {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, concat!($prefix, "{}"), self.0)
+                write!(f, concat!($prefix, "{}"), self.index())
             }
         }
 

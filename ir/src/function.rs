@@ -261,3 +261,16 @@ impl Function {
         self.outputs.iter().position(|output| output == name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// There may be a million of them, in several programs at once.
+    #[test]
+    fn instructions_and_names_are_small() {
+        assert!(size_of::<InstData>() <= 64, "{}", size_of::<InstData>());
+        assert_eq!(size_of::<Option<Value>>(), size_of::<u32>());
+        assert_eq!(size_of::<Option<Inst>>(), size_of::<u32>());
+    }
+}

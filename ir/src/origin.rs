@@ -6,6 +6,8 @@
 
 use std::fmt;
 
+use crate::entity::OneAndIndex;
+
 /// The part of a leaf's or an operator's work that an instruction does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub enum Part {
@@ -45,9 +47,8 @@ impl Part {
 /// The origin of an instruction.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub struct Origin {
-    /// The leaf slot, counted over the whole function; `None` for work that belongs to no single leaf.
-    pub slot: Option<u32>,
-    /// What the instruction does for it.
+    slot: Option<OneAndIndex>,
+    /// What the instruction does for its slot.
     pub part: Part,
 }
 
@@ -58,10 +59,31 @@ impl Origin {
     /// Work of several leaves that may bend the surface sharply.
     pub const CREASE: Self = Self { slot: None, part: Part::Crease };
 
-    /// Work for one leaf slot.
+    /// The largest number of a leaf slot.
+    pub const MAX_SLOT: u32 = u32::MAX - 1;
+
+    /// Work for a leaf slot, or for no single one.
+    ///
+    /// # Panics
+    /// If the slot is beyond [`MAX_SLOT`](Self::MAX_SLOT).
     #[must_use]
-    pub const fn leaf(slot: u32, part: Part) -> Self {
-        Self { slot: Some(slot), part }
+    pub fn new(slot: Option<u32>, part: Part) -> Self {
+        Self { slot: slot.map(|slot| OneAndIndex::of(slot as usize)), part }
+    }
+
+    /// Work for one leaf slot.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new).
+    #[must_use]
+    pub fn leaf(slot: u32, part: Part) -> Self {
+        Self::new(Some(slot), part)
+    }
+
+    /// The leaf slot, counted over the whole function; `None` for work that belongs to no single leaf.
+    #[must_use]
+    pub fn slot(self) -> Option<u32> {
+        self.slot.map(|slot| slot.index() as u32)
     }
 
     /// The origin of a derivative of this.
@@ -73,7 +95,7 @@ impl Origin {
 
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.slot {
+        match self.slot() {
             Some(slot) => write!(f, "@{slot}.{}", self.part.name()),
             None => write!(f, "@{}", self.part.name()),
         }

@@ -274,7 +274,7 @@ impl<'a> Verifier<'a> {
         }
         let data = &self.function.insts[inst];
         self.uses(place, self.function.operands(inst));
-        if let Some(slot) = data.origin.slot.filter(|slot| !self.slots.contains_key(slot)) {
+        if let Some(slot) = data.origin.slot().filter(|slot| !self.slots.contains_key(slot)) {
             self.error(place, 13, format!("slot {slot} belongs to no table"));
         }
         match &data.kind {

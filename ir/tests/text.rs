@@ -5,7 +5,7 @@ mod common;
 use common::sample;
 use fastrand::Rng;
 use jbt_ir::limits::{MAX_ERRORS, MAX_FOLD_DEPTH, MAX_TABLES, MAX_VALUES};
-use jbt_ir::{Function, InstKind, parse, verify};
+use jbt_ir::{Function, InstKind, Origin, parse, verify};
 
 /// How many random functions each test takes.
 const SAMPLES: u64 = 300;
@@ -145,4 +145,18 @@ fn numbers_of_values_and_tables_are_limited() {
     };
     assert_eq!(read(&tables(MAX_TABLES)).tables.len(), MAX_TABLES);
     assert_eq!(parse(&tables(MAX_TABLES + 1)).expect_err("one too many")[0].expected, "at most t99999");
+}
+
+#[test]
+fn numbers_of_slots_are_limited() {
+    let slot = |number: u64| {
+        let table = format!("table t0 \"t\" (c) slots ({number})");
+        format!("function \"f\" () -> () {{\n{table}\nblock0:\nv0 = const 1.0 @{number}.position\nyield\n}}")
+    };
+    let largest = u64::from(Origin::MAX_SLOT);
+    let text = read(&slot(largest)).to_string();
+    assert!(text.contains(&format!("@{largest}.position")), "{text}");
+    for beyond in [largest + 1, 1 << 32] {
+        assert!(parse(&slot(beyond)).is_err(), "{beyond}");
+    }
 }

@@ -93,11 +93,6 @@ mod serial {
             self.map(move |item| each(&mut state, item))
         }
 
-        fn for_each_init<S>(self, start: impl FnOnce() -> S, mut each: impl FnMut(&mut S, Self::Item)) {
-            let mut state = start();
-            self.for_each(|item| each(&mut state, item));
-        }
-
         fn try_for_each_init<S, E>(
             mut self,
             start: impl FnOnce() -> S,

@@ -1,8 +1,10 @@
 //! Cancelling: from the first moment, also while programs are made, and never long between two looks.
 
+use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
 use jbt::contour::{Detail, Plane, Slicer};
+use jbt::export::{Format, write};
 use jbt::render::{Quality, RenderError};
 use jbt::sample::Sampler;
 use jbt::solid::Measure;
@@ -170,6 +172,40 @@ fn evaluating_stops_on_all_threads() {
     let probed = cancelled.watches(|| evaluator.probe([0.0; 3]).value());
     assert_eq!(probed, 0.0, "a single point is answered");
     assert!(evaluator.eval(&points[..2], &mut samples).is_ok(), "the watch is gone");
+}
+
+/// Cancels a token when the first bytes come, and takes its time.
+struct CancellingWriter<'a> {
+    token: &'a CancelToken,
+    written: usize,
+}
+
+impl Write for CancellingWriter<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.token.cancel();
+        std::thread::sleep(Duration::from_millis(20));
+        self.written += bytes.len();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn writing_a_mesh_stops_in_every_format() {
+    let settings = Polygonize { fineness: Fineness::Resolution(150), ..Polygonize::default() };
+    let mesh = settings.mesh(&Compiler::new(), &tree(HERO)).run().expect("it has a surface").mesh;
+    for format in Format::ALL {
+        let mut whole = Vec::new();
+        write(&mesh, format, &mut whole).expect("nobody stops it");
+        let token = CancelToken::new();
+        let mut out = CancellingWriter { token: &token, written: 0 };
+        let refused = token.watches(|| write(&mesh, format, &mut out)).expect_err("it is stopped");
+        assert_eq!(refused.kind(), ErrorKind::Cancelled, "{format}: {refused}");
+        assert!((1..whole.len()).contains(&out.written), "{format}: {} of {}", out.written, whole.len());
+    }
 }
 
 #[test]

@@ -8,13 +8,17 @@
 //! A look is a question to the watch that is offered around the work, or a call of a job's hook of progress,
 //! behind which tokens are asked. Times are those of the processor that the one thread that works took, so
 //! that other work on the machine does not count. Linux alone tells them, in steps of some milliseconds;
-//! elsewhere there are none.
+//! elsewhere there are none. `JBT_GAPS=1` prints where a look stands that ends a gap of more than 50 ms.
 
+use std::backtrace::Backtrace;
 use std::fs;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use jbt_ir::watch;
+
+/// A gap that is told.
+const LONG: Duration = Duration::from_millis(50);
 
 /// The looks of one piece of work.
 #[derive(Clone, Debug)]
@@ -45,7 +49,12 @@ impl WorkGaps {
     pub fn look(&self) {
         let now = taken();
         let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.longest = seen.longest.max(now.saturating_sub(seen.last));
+        let gap = now.saturating_sub(seen.last);
+        #[allow(clippy::print_stderr, reason = "it is asked for")]
+        if gap > LONG && std::env::var_os("JBT_GAPS").is_some() {
+            eprintln!("{gap:.1?} until\n{}", Backtrace::force_capture());
+        }
+        seen.longest = seen.longest.max(gap);
         seen.last = now;
     }
 }

@@ -2,20 +2,23 @@
 //! engine.
 //!
 //! ```text
-//! cargo run --release -p jbt-benches --bin gaps [-- PART [ENGINE]]
+//! cargo run --release -p jbt-benches --bin gaps [-- PART [ENGINE [RESOLUTION]]]
 //! ```
 //!
 //! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those
 //! of the processor, which Linux alone tells (`jbt_testkit::gaps`). Only scenes whose name has PART are
 //! looked at; ENGINE is `scalar`, `lanes` or `jit`. Behind a gap of more than 50 ms stands a `!`. All of them
-//! take half an hour, most of it the scalar reference.
+//! take half an hour, most of it the scalar reference. With RESOLUTION it is one large mesh, with its triangles
+//! in millions, and writing it: each piece that is written is a look, as whoever takes it may refuse.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fs;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use jbt::contour::{Detail, Plane, Slicer};
+use jbt::export::{Format, write};
 use jbt::sample::Sampler;
 use jbt::solid::Measure;
 use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Polygonize, Query, Render, Renderer, Solid, Task};
@@ -76,6 +79,36 @@ fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
     told
 }
 
+/// The gaps of a mesh of this resolution, and of writing it in each format.
+fn large_gaps(tree: &CheckedTree, engine: Engine, resolution: usize) -> Vec<(String, Duration)> {
+    let compiled = Compiler::for_engine(engine).compile(tree);
+    let mesh = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
+    let mut made = None;
+    let gap = WorkGaps::longest(|gaps| made = mesh.with(&compiled).on_progress(|_| gaps.look()).run().ok());
+    let Some(made) = made else { return vec![("no mesh".to_owned(), gap)] };
+    let millions = made.mesh.triangles.len() as f64 / 1e6;
+    let mut told = vec![(format!("mesh of {millions:.1} million"), gap)];
+    for format in Format::ALL {
+        let write = |gaps| drop(write(&made.mesh, format, &mut LookingWriter(gaps)));
+        told.push((format.to_string(), WorkGaps::longest(write)));
+    }
+    told
+}
+
+/// Takes what is written, and looks.
+struct LookingWriter(WorkGaps);
+
+impl Write for LookingWriter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.look();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 /// The scenes: the examples, and some that are long programs.
 fn scenes() -> Vec<(String, String)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../examples");
@@ -101,6 +134,7 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let part = arguments.next().unwrap_or_default();
     let engine = arguments.next();
+    let resolution = arguments.next().map(|number| number.parse().expect("RESOLUTION is a number"));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     println!("{:14} {:7} longest gaps in ms", "scene", "engine");
     let mut most = Duration::ZERO;
@@ -108,7 +142,10 @@ fn main() {
         let tree = tree(&text);
         for one in Engine::ALL.into_iter().filter(|one| engine.as_ref().is_none_or(|name| name == one.name()))
         {
-            let told = pool.install(|| gaps(&tree, one));
+            let told: Vec<(String, Duration)> = pool.install(|| match resolution {
+                Some(resolution) => large_gaps(&tree, one, resolution),
+                None => gaps(&tree, one).into_iter().map(|(task, gap)| (task.to_owned(), gap)).collect(),
+            });
             let words = told.iter().map(|(task, gap)| {
                 let mark = if *gap > MOST { "!" } else { "" };
                 format!("{task} {:.1}{mark}", gap.as_secs_f64() * 1e3)

@@ -173,7 +173,7 @@ fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
             let data = &function.insts[inst];
             match &data.kind {
                 InstKind::Op { .. } => {
-                    if let (Some(slot), Part::Distance) = (data.origin.slot, data.origin.part) {
+                    if let (Some(slot), Part::Distance) = (data.origin.slot(), data.origin.part) {
                         *slots.entry(slot).or_default() += 1;
                     }
                 }

@@ -70,7 +70,7 @@ impl Ground for Emitting {
     /// ops of a distance count as position.
     fn begin(&mut self, bounds: &mut FunctionBuilder, origin: Origin) {
         let part = if origin.part == Part::Distance { Part::Position } else { origin.part };
-        bounds.set_origin(Origin { slot: origin.slot, part });
+        bounds.set_origin(Origin::new(origin.slot(), part));
     }
 
     fn end(&mut self, bounds: &mut FunctionBuilder, origin: Origin, high: Value) {

@@ -96,8 +96,8 @@ impl<'a> Writer<'a> {
 
     /// The origin of the new instructions: slots have other numbers.
     fn origin(&self, old: Origin) -> Origin {
-        let slot = old.slot.map(|slot| self.slots.get(&slot).copied().unwrap_or(slot));
-        Origin { slot, ..old }
+        let slot = old.slot().map(|slot| self.slots.get(&slot).copied().unwrap_or(slot));
+        Origin::new(slot, old.part)
     }
 
     /// Where the parent of a table is now.

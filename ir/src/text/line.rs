@@ -265,10 +265,14 @@ impl<'a> Line<'a> {
         }
         let mut slot = None;
         if matches!(self.token.kind, Kind::Number(_)) {
-            slot = Some(self.integer("a slot, such as 3")?);
+            slot = Some(self.take("a slot, such as 3", |kind| {
+                let Kind::Number(text) = kind else { return None };
+                decimal(text).filter(|&slot| slot <= Origin::MAX_SLOT)
+            })?);
             self.punctuation(".")?;
         }
-        Ok(Origin { slot, part: self.choice("a part", &Part::ALL, Part::name)? })
+        let part = self.choice("a part", &Part::ALL, Part::name)?;
+        Ok(Origin::new(slot, part))
     }
 
     /// A decimal, an infinity or a NaN.

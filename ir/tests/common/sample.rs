@@ -71,7 +71,7 @@ impl Writer<'_> {
         for _ in 0..count {
             let part = self.rng.choice(Part::ALL).expect("there are parts");
             let slot = (self.slots > 0 && self.rng.bool()).then(|| self.rng.u32(0..self.slots));
-            self.builder.set_origin(Origin { slot, part });
+            self.builder.set_origin(Origin::new(slot, part));
             let op = *self.rng.choice(Op::ALL).expect("there are ops");
             let mut args: Vec<Value> = op.operands().iter().map(|&type_| self.any(type_)).collect();
             if matches!(op, Op::Shl | Op::Shr) {

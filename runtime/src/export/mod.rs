@@ -40,6 +40,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_ir::watch::{self, Stopped};
 use thiserror::Error;
 
 use crate::error::{Classified, ErrorKind};
@@ -75,6 +76,9 @@ pub enum ExportError {
     /// The parts of the mesh do not fit each other, or a position or normal is not finite.
     #[error("the mesh is malformed: {0}")]
     Malformed(String),
+    /// A token has stopped it: see [`CancelToken::watches`](crate::CancelToken::watches).
+    #[error("writing the mesh was cancelled")]
+    Cancelled,
     /// The format counts in 32 bits, and this is more.
     #[error("a {format} file holds at most {} bytes or triangles, and this one would need {size}", u32::MAX)]
     TooLarge {
@@ -90,8 +94,15 @@ impl Classified for ExportError {
         match self {
             Self::Extension { .. } | Self::Malformed(_) => ErrorKind::Argument,
             Self::File { .. } | Self::Write(_) => ErrorKind::System,
+            Self::Cancelled => ErrorKind::Cancelled,
             Self::TooLarge { .. } => ErrorKind::Limit,
         }
+    }
+}
+
+impl From<Stopped> for ExportError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
     }
 }
 
@@ -123,13 +134,17 @@ pub fn write_with(
 ) -> Result<(), ExportError> {
     check(mesh)?;
     let mesh = &*mesh.right_handed();
-    let split = if format.conventions().splits { mesh.split() } else { Cow::Borrowed(mesh) };
+    watch::go_on()?;
+    let split =
+        if format.conventions().splits { mesh.split_asking(&watch::go_on)? } else { Cow::Borrowed(mesh) };
+    watch::go_on()?;
     let mesh = &*split;
     let choices = FileChoices::new(mesh, format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     format.write(mesh, choices, &mut out).map_err(|error| match error {
         WriteError::Write(error) => ExportError::Write(error),
         WriteError::TooLarge(size) => ExportError::TooLarge { format, size },
+        WriteError::Cancelled => ExportError::Cancelled,
     })?;
     out.flush()?;
     Ok(())
@@ -172,6 +187,7 @@ pub fn save_with(
         other @ (ExportError::Extension { .. }
         | ExportError::File { .. }
         | ExportError::Malformed(_)
+        | ExportError::Cancelled
         | ExportError::TooLarge { .. }) => other,
     };
     let mut file = AtomicFile::create(path, true).map_err(at_path)?;
@@ -203,50 +219,51 @@ fn check(mesh: &Mesh) -> Result<(), ExportError> {
         }
     }
     let is_missing = |triangle: &[u32; 3]| triangle.iter().any(|&vertex| vertex as usize >= count);
-    if let Some(index) = first(&mesh.triangles, is_missing) {
+    if let Some(index) = first(&mesh.triangles, is_missing)? {
         return malformed(format!("triangle {index} names a vertex that does not exist"));
     }
     let is_endless = |numbers: &[f32; 3]| !numbers.iter().all(|number| number.is_finite());
-    if let Some(index) = first(&mesh.positions, is_endless) {
+    if let Some(index) = first(&mesh.positions, is_endless)? {
         return malformed(format!("the position of vertex {index} is not finite"));
     }
-    if let Some(index) = first(&mesh.normals, is_endless) {
+    if let Some(index) = first(&mesh.normals, is_endless)? {
         return malformed(format!("the normal of vertex {index} is not finite"));
     }
-    check_creases(mesh).map_or(Ok(()), malformed)
+    check_creases(mesh)?.map_or(Ok(()), malformed)
 }
 
 /// What is wrong with the creases of a mesh.
-fn check_creases(mesh: &Mesh) -> Option<String> {
+fn check_creases(mesh: &Mesh) -> Result<Option<String>, Stopped> {
     let Creases { vertices, normals, attributes, corners } = &mesh.creases;
     let (sides, count) = (vertices.len(), mesh.positions.len());
     if normals.len() != sides {
-        return Some(format!("{sides} sides of creases and {} normals", normals.len()));
+        return Ok(Some(format!("{sides} sides of creases and {} normals", normals.len())));
     }
     let widths = mesh.attributes.iter().map(|attribute| attribute.width * sides);
     if !corners.is_empty() && !attributes.iter().map(Vec::len).eq(widths) {
-        return Some("the attributes of creases are not those of the mesh".to_owned());
+        return Ok(Some("the attributes of creases are not those of the mesh".to_owned()));
     }
-    if let Some(side) = first(vertices, |&vertex| vertex as usize >= count) {
-        return Some(format!("side {side} of a crease names a vertex that does not exist"));
+    if let Some(side) = first(vertices, |&vertex| vertex as usize >= count)? {
+        return Ok(Some(format!("side {side} of a crease names a vertex that does not exist")));
     }
-    if let Some(side) = first(normals, |normal| !normal.iter().all(|number| number.is_finite())) {
-        return Some(format!("the normal of side {side} of a crease is not finite"));
+    if let Some(side) = first(normals, |normal| !normal.iter().all(|number| number.is_finite()))? {
+        return Ok(Some(format!("the normal of side {side} of a crease is not finite")));
     }
     let is_missing = |&[corner, side]: &[u32; 2]| {
         let vertex = mesh.triangles.get(corner as usize / 3).map(|triangle| triangle[corner as usize % 3]);
         vertex.is_none() || vertices.get(side as usize).copied() != vertex
     };
     let corner = first(corners, is_missing)?;
-    Some(format!("corner {corner} of a crease is not at the vertex of its side"))
+    Ok(corner.map(|corner| format!("corner {corner} of a crease is not at the vertex of its side")))
 }
 
 /// The index of the first item with a property.
-fn first<T: Sync>(items: &[T], has: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+fn first<T: Sync>(items: &[T], has: impl Fn(&T) -> bool + Sync) -> Result<Option<usize>, Stopped> {
     const PART: usize = 1 << 14;
-    let found = |part: &[T]| part.iter().position(&has);
-    let parts: Vec<Option<usize>> = scatter(|_| items.par_chunks(PART).map(found).collect());
-    parts.into_iter().enumerate().find_map(|(part, place)| Some(part * PART + place?))
+    let found = |part: &[T]| watch::go_on().map(|()| part.iter().position(&has));
+    let parts: Result<Vec<Option<usize>>, Stopped> =
+        scatter(|watches| items.par_chunks(PART).map(|part| watches.hold(|| found(part))).collect());
+    Ok(parts?.into_iter().enumerate().find_map(|(part, place)| Some(part * PART + place?)))
 }
 
 #[cfg(test)]

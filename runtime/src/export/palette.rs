@@ -1,17 +1,20 @@
 //! Few colours for many: the median cut (Heckbert 1982), and rounds of Lloyd's iteration. Sums are whole
 //! numbers, so the same colours come out in any order of the vertices.
 
+use jbt_ir::watch::{self, Stopped};
+
 /// Rounds that move colours of the palette to the means of what is nearest to them.
 const ROUNDS: usize = 8;
 
 /// At most `most` colours, ascending, that stand for these, one of which at least is there.
-pub(super) fn reduced(colors: &[[u8; 3]], most: usize) -> Vec<[u8; 3]> {
+pub(super) fn reduced(colors: &[[u8; 3]], most: usize) -> Result<Vec<[u8; 3]>, Stopped> {
     let mut counted = counted(colors);
     if counted.len() <= most {
-        return counted.into_iter().map(|(color, _)| color).collect();
+        return Ok(counted.into_iter().map(|(color, _)| color).collect());
     }
     let mut boxes = vec![&mut counted[..]];
     while boxes.len() < most {
+        watch::go_on()?;
         // The box whose longest side, times what is in it, is the longest.
         let weight = |colors: &[([u8; 3], u64)]| {
             let (_, length) = longest(colors);
@@ -39,14 +42,17 @@ pub(super) fn reduced(colors: &[[u8; 3]], most: usize) -> Vec<[u8; 3]> {
     let counted = self::counted(colors);
     for _ in 0..ROUNDS {
         let mut groups = vec![Vec::new(); palette.len()];
-        counted.iter().for_each(|one| groups[nearest(&palette, one.0)].push(one));
+        for one in &counted {
+            watch::go_on()?;
+            groups[nearest(&palette, one.0)].push(one);
+        }
         for (color, group) in palette.iter_mut().zip(&groups).filter(|(_, group)| !group.is_empty()) {
             *color = mean(group.iter().copied());
         }
     }
     palette.sort_unstable();
     palette.dedup();
-    palette
+    Ok(palette)
 }
 
 /// The place of the nearest colour of a palette; the first of equally near ones.
@@ -91,20 +97,20 @@ mod tests {
     #[test]
     fn few_colours_stay_and_many_become_few() {
         let three = [[1, 2, 3], [200, 0, 0], [1, 2, 3], [0, 9, 0]];
-        assert_eq!(reduced(&three, 4), [[0, 9, 0], [1, 2, 3], [200, 0, 0]]);
+        assert_eq!(reduced(&three, 4), Ok(vec![[0, 9, 0], [1, 2, 3], [200, 0, 0]]));
         // Two clouds of colours.
         let cloud = |middle: u8| (0..50_u8).map(move |n| [middle + n % 5, middle + n % 7, middle + n % 3]);
         let both: Vec<[u8; 3]> = cloud(20).chain(cloud(200)).collect();
-        let two = reduced(&both, 2);
+        let two = reduced(&both, 2).expect("nobody stops it");
         assert_eq!(two.len(), 2);
         assert!(two[0].iter().all(|&c| c < 30) && two[1].iter().all(|&c| c > 195), "{two:?}");
         assert!(both.iter().all(|&color| nearest(&two, color) == usize::from(color[0] > 100)));
         let grey: Vec<[u8; 3]> = (0..=255).map(|n| [n; 3]).collect();
-        let eight = reduced(&grey, 8);
+        let eight = reduced(&grey, 8).expect("nobody stops it");
         assert_eq!(eight.len(), 8);
         assert!(grey.iter().all(|&color| eight[nearest(&eight, color)][0].abs_diff(color[0]) <= 20));
         let mut backwards = grey.clone();
         backwards.reverse();
-        assert_eq!(reduced(&backwards, 8), eight);
+        assert_eq!(reduced(&backwards, 8), Ok(eight));
     }
 }

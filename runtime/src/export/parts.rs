@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 use thiserror::Error;
 
+use jbt_ir::watch::{self, Stopped};
 use jbt_model::constant::{ConstantValues, LeafConstant};
 
 use crate::parallel::*;
@@ -22,6 +23,15 @@ pub(super) enum WriteError {
     /// The format counts in 32 bits, and this is more: bytes or triangles.
     #[error("{0} are too many")]
     TooLarge(u64),
+    /// Nobody wants the file any more.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<Stopped> for WriteError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
+    }
 }
 
 /// The linear colours of a mesh, if it has the attribute `color` of width 3: one for each vertex.
@@ -91,25 +101,45 @@ pub(super) fn others<'a>(
 const BLOCK: usize = 1 << 14;
 /// Blocks whose bytes are in memory at once.
 const BLOCKS: usize = 32;
+/// Bytes that are written between two looks at whether the file is still wanted: archives compress them.
+const PIECE: usize = 1 << 16;
 
 /// Writes the bytes of items, one after the other. All threads make bytes, from the index of an item each.
 pub(super) fn write_items(
     out: &mut impl Write,
     count: usize,
     bytes: impl Fn(usize, &mut Vec<u8>) -> io::Result<()> + Sync,
-) -> io::Result<()> {
+) -> Result<(), WriteError> {
     let block = |first: usize| {
         span!("bytes");
+        watch::go_on()?;
         let mut block = Vec::new();
         (first..count.min(first + BLOCK)).try_for_each(|item| bytes(item, &mut block))?;
         Ok(block)
     };
     for first in (0..count).step_by(BLOCK * BLOCKS) {
         let firsts: Vec<usize> = (first..count.min(first + BLOCK * BLOCKS)).step_by(BLOCK).collect();
-        let blocks: Vec<io::Result<Vec<u8>>> = scatter(|_| firsts.into_par_iter().map(block).collect());
-        blocks.into_iter().try_for_each(|block| out.write_all(&block?))?;
+        let blocks: Vec<Result<Vec<u8>, WriteError>> =
+            scatter(|watches| firsts.into_par_iter().map(|first| watches.hold(|| block(first))).collect());
+        for block in blocks {
+            for piece in block?.chunks(PIECE) {
+                watch::go_on()?;
+                out.write_all(piece)?;
+            }
+        }
     }
     Ok(())
+}
+
+/// Makes something of each item, and looks now and then whether it is still wanted.
+pub(super) fn of_each<T, R>(items: &[T], make: impl Fn(&T) -> R) -> Result<Vec<R>, Stopped> {
+    const ITEMS: usize = 1 << 12;
+    let mut made = Vec::with_capacity(items.len());
+    for part in items.chunks(ITEMS) {
+        watch::go_on()?;
+        made.extend(part.iter().map(&make));
+    }
+    Ok(made)
 }
 
 /// Appends reals as little-endian bytes.

@@ -7,9 +7,11 @@
 
 use std::io::Write;
 
+use jbt_ir::watch::{self, Stopped};
+
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, LengthUnit, Up};
 use super::palette;
-use super::parts::{WriteError, colors, told, write_items};
+use super::parts::{WriteError, colors, of_each, told, write_items};
 use super::zip::Archive;
 use crate::mesh::{Mesh, MeshPiece};
 use crate::srgb;
@@ -83,11 +85,12 @@ fn model(mesh: &Mesh, choices: FileChoices<'_>, out: &mut dyn Write) -> Result<(
         return Ok(());
     }
     // Positions are shared; corners have the colours of their sides.
-    let split = mesh.split();
+    let split = mesh.split_asking(&watch::go_on)?;
     let palette = colors(&split).map(|colors| match choices.palette {
         Some(most) => Palette::of_materials(colors, &split.triangles, (encoding, most.get().into())),
         None => Palette::new(colors, &split.triangles, encoding),
     });
+    let palette = palette.transpose()?;
     if let Some(palette) = &palette {
         palette.write(choices.palette.is_some(), out)?;
     }
@@ -177,13 +180,13 @@ struct Palette {
 }
 
 impl Palette {
-    fn new(linear: &[[f32; 3]], triangles: &[[u32; 3]], encoding: ColorEncoding) -> Self {
-        let all = bytes_of(linear, encoding);
+    fn new(linear: &[[f32; 3]], triangles: &[[u32; 3]], encoding: ColorEncoding) -> Result<Self, Stopped> {
+        let all = bytes_of(linear, encoding)?;
         let mut colors = all.clone();
         colors.sort_unstable();
         colors.dedup();
         let place = |vertex: u32| colors.binary_search(&all[vertex as usize]).unwrap_or(0) as u32;
-        Self { corners: triangles.iter().map(|triangle| triangle.map(place)).collect(), colors }
+        Ok(Self { corners: of_each(triangles, |triangle| triangle.map(place))?, colors })
     }
 
     /// Of at most so many colours, and one for each triangle: that which is nearest to two of its corners,
@@ -192,10 +195,10 @@ impl Palette {
         linear: &[[f32; 3]],
         triangles: &[[u32; 3]],
         (encoding, most): (ColorEncoding, usize),
-    ) -> Self {
-        let all = bytes_of(linear, encoding);
-        let colors = palette::reduced(&all, most);
-        let of_vertex: Vec<usize> = all.iter().map(|&color| palette::nearest(&colors, color)).collect();
+    ) -> Result<Self, Stopped> {
+        let all = bytes_of(linear, encoding)?;
+        let colors = palette::reduced(&all, most)?;
+        let of_vertex = of_each(&all, |&color| palette::nearest(&colors, color))?;
         let material = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|vertex| of_vertex[vertex as usize]);
             let chosen = if b == c {
@@ -209,7 +212,7 @@ impl Palette {
             };
             [chosen as u32; 3]
         };
-        Self { corners: triangles.iter().map(material).collect(), colors }
+        Ok(Self { corners: of_each(triangles, material)?, colors })
     }
 
     /// The resource that triangles name: base materials, or a group of colours.
@@ -233,6 +236,6 @@ impl Palette {
     }
 }
 
-fn bytes_of(linear: &[[f32; 3]], encoding: ColorEncoding) -> Vec<[u8; 3]> {
-    linear.iter().map(|color| color.map(|channel| srgb::byte(encoding.encode(channel)))).collect()
+fn bytes_of(linear: &[[f32; 3]], encoding: ColorEncoding) -> Result<Vec<[u8; 3]>, Stopped> {
+    of_each(linear, |color| color.map(|channel| srgb::byte(encoding.encode(channel))))
 }

@@ -1,5 +1,6 @@
 //! Whether a mesh is closed, and whether it is a manifold.
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 use crate::parallel::*;
@@ -121,27 +122,49 @@ impl DirectedEdges {
 ///
 /// Each thread looks at the edges whose lower vertex is in its part of the vertices.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
+    let Ok(closed) = are_closed(vertices, triangles, || Ok::<_, Infallible>(()));
+    closed
+}
+
+/// As [`is_closed`]. Every now and then it is asked whether to go on.
+pub(crate) fn are_closed<E: Send>(
+    vertices: usize,
+    triangles: &[[u32; 3]],
+    go_on: impl Fn() -> Result<(), E> + Sync,
+) -> Result<bool, E> {
     span!("closed");
     let part = vertices.div_ceil(thread_count().clamp(1, MAX_SPLIT)).max(1);
     let parts: Vec<Range<usize>> =
         (0..vertices.max(1)).step_by(part).map(|first| first..vertices.min(first + part)).collect();
-    scatter(|_| parts.into_par_iter().all(|own| are_paired(own, vertices, triangles)))
+    let paired = |own| are_paired(own, vertices, triangles, &go_on);
+    let paired: Result<Vec<bool>, E> = scatter(|_| parts.into_par_iter().map(paired).collect());
+    Ok(paired?.into_iter().all(|paired| paired))
 }
 
 /// Threads that check a mesh together: each reads all triangles.
 const MAX_SPLIT: usize = 16;
+/// Triangles that are read between two questions: less than a millisecond of work.
+const ASK_AFTER: usize = 1 << 15;
 
 /// Whether the edges whose lower vertex is one of these have two triangles each, in opposite directions, and
 /// no triangle names a missing vertex.
-fn are_paired(own: Range<usize>, vertices: usize, triangles: &[[u32; 3]]) -> bool {
+fn are_paired<E>(
+    own: Range<usize>,
+    vertices: usize,
+    triangles: &[[u32; 3]],
+    go_on: impl Fn() -> Result<(), E>,
+) -> Result<bool, E> {
     let mut slots = vec![[NO_END; SLOTS]; own.len()];
     // For each vertex and direction, the slots whose edges have been seen in that direction, a bit each.
     let mut met = vec![[0_u8; 2]; own.len()];
     let mut rest = Vec::new();
-    for &[p, q, r] in triangles {
+    for (index, &[p, q, r]) in triangles.iter().enumerate() {
+        if index % ASK_AFTER == 0 {
+            go_on()?;
+        }
         let last = p.max(q).max(r);
         if last as usize >= vertices || last == NO_END || p == q || q == r || r == p {
-            return false;
+            return Ok(false);
         }
         for (from, to) in [(p, q), (q, r), (r, p)] {
             let (low, high) = ((from.min(to) as usize).wrapping_sub(own.start), from.max(to));
@@ -154,7 +177,7 @@ fn are_paired(own: Range<usize>, vertices: usize, triangles: &[[u32; 3]]) -> boo
             };
             let met = &mut met[low][usize::from(from > to)];
             if *met >> slot & 1 == 1 {
-                return false;
+                return Ok(false);
             }
             *met |= 1 << slot;
         }
@@ -163,10 +186,11 @@ fn are_paired(own: Range<usize>, vertices: usize, triangles: &[[u32; 3]]) -> boo
     rest.sort_unstable();
     let (pairs, odd) = rest.as_chunks::<2>();
     let is_pair = |&[(a, b, up), (c, d, down)]: &[(usize, u32, bool); 2]| (a, b, up) == (c, d, !down) && !up;
-    met.iter().all(|[up, down]| up == down)
+    let paired = met.iter().all(|[up, down]| up == down)
         && odd.is_empty()
         && pairs.iter().all(is_pair)
-        && rest.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|edge| edge.len() == 2)
+        && rest.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|edge| edge.len() == 2);
+    Ok(paired)
 }
 
 /// The edges to larger vertex numbers that are kept with each vertex. Most vertices have three, few have more

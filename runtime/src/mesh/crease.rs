@@ -9,6 +9,7 @@
 //! ```
 
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::ops::Range;
 
 use super::indexed::{Attribute, Creases, Mesh};
@@ -69,24 +70,55 @@ impl Mesh {
     /// it: behind the others, at the positions of their vertices. It is closed by positions alone.
     #[must_use]
     pub fn split(&self) -> Cow<'_, Self> {
+        let Ok(split) = self.split_asking(&|| Ok::<_, Infallible>(()));
+        split
+    }
+
+    /// As [`split`](Self::split). Every now and then it is asked whether to go on.
+    pub(crate) fn split_asking<E>(&self, go_on: &dyn Fn() -> Result<(), E>) -> Result<Cow<'_, Self>, E> {
         let creases = &self.creases;
         if creases.corners.is_empty() {
-            return Cow::Borrowed(self);
+            return Ok(Cow::Borrowed(self));
         }
         if !self.parts.is_empty() {
-            return Cow::Owned(self.each_piece(|piece| piece.split().into_owned()));
+            return Ok(Cow::Owned(self.each_piece(|piece| piece.split().into_owned())));
         }
         let count = self.positions.len();
-        let mut split = Self { creases: Creases::default(), ..self.clone() };
-        split.positions.extend(creases.vertices.iter().map(|&vertex| self.positions[vertex as usize]));
-        split.normals.extend_from_slice(&creases.normals);
-        for (attribute, values) in split.attributes.iter_mut().zip(&creases.attributes) {
-            let Attribute { values: all, .. } = attribute;
-            all.extend_from_slice(values);
+        let mut positions = copied(&self.positions, creases.vertices.len(), go_on)?;
+        positions.extend(creases.vertices.iter().map(|&vertex| self.positions[vertex as usize]));
+        let mut normals = copied(&self.normals, creases.normals.len(), go_on)?;
+        normals.extend_from_slice(&creases.normals);
+        let mut attributes = Vec::with_capacity(self.attributes.len());
+        for (index, Attribute { name, width, values }) in self.attributes.iter().enumerate() {
+            let sides = creases.attributes.get(index).map_or(&[][..], Vec::as_slice);
+            let mut values = copied(values, sides.len(), go_on)?;
+            values.extend_from_slice(sides);
+            attributes.push(Attribute { name: name.clone(), width: *width, values });
         }
+        let mut triangles = copied(&self.triangles, 0, go_on)?;
         for &[corner, side] in &creases.corners {
-            split.triangles[corner as usize / 3][corner as usize % 3] = (count + side as usize) as u32;
+            triangles[corner as usize / 3][corner as usize % 3] = (count + side as usize) as u32;
         }
-        Cow::Owned(split)
+        Ok(Cow::Owned(Self {
+            origin: self.origin,
+            orientation: self.orientation,
+            positions,
+            normals,
+            attributes,
+            triangles,
+            parts: Vec::new(),
+            creases: Creases::default(),
+        }))
     }
+}
+
+/// A copy with room for more. Every now and then it is asked whether to go on.
+fn copied<T: Copy, E>(items: &[T], more: usize, go_on: &dyn Fn() -> Result<(), E>) -> Result<Vec<T>, E> {
+    const ITEMS: usize = 1 << 16;
+    let mut copy = Vec::with_capacity(items.len() + more);
+    for part in items.chunks(ITEMS) {
+        go_on()?;
+        copy.extend_from_slice(part);
+    }
+    Ok(copy)
 }

@@ -7,6 +7,7 @@
 //! such faces are rare.
 
 use crate::parallel::*;
+use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
@@ -72,10 +73,15 @@ impl Crossings {
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Crossings {
-    let mut found = look(bricks, samples, iso);
+pub(crate) fn find(
+    bricks: &Bricks,
+    samples: &BrickSamples,
+    iso: f32,
+    progress: &Progress<'_>,
+) -> Result<Crossings, Cancelled> {
+    let mut found = look(bricks, samples, iso, progress)?;
     let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
-    found.numbered(bricks, flipped_faces)
+    found.numbered(bricks, flipped_faces, progress)
 }
 
 /// The crossing cells of all bricks, before faces are flipped.
@@ -92,38 +98,51 @@ pub(crate) struct UnflippedCells {
 
 impl UnflippedCells {
     /// Numbers the vertices, once faces are flipped.
-    pub(crate) fn numbered(self, bricks: &Bricks, flipped_faces: u64) -> Crossings {
+    pub(crate) fn numbered(
+        self,
+        bricks: &Bricks,
+        flipped_faces: u64,
+        progress: &Progress<'_>,
+    ) -> Result<Crossings, Cancelled> {
         span!("number");
         let Self { mut cells, corners, starts, suspects: _, cut } = self;
-        let counts = number_vertices(bricks, &starts, &mut cells);
+        let counts = number_vertices(bricks, &starts, &mut cells, progress)?;
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
         let quads = self::starts(counts.iter().map(|count| count.quads));
         let is_open = counts.iter().any(|count| count.is_open);
-        Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut, is_open }
+        Ok(Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut, is_open })
     }
 }
 
 /// Finds the crossing cells.
-pub(crate) fn look(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> UnflippedCells {
+pub(crate) fn look(
+    bricks: &Bricks,
+    samples: &BrickSamples,
+    iso: f32,
+    progress: &Progress<'_>,
+) -> Result<UnflippedCells, Cancelled> {
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let of_group = |signs: &mut Signs, index: usize| {
         span!("cells of some bricks");
+        progress.breathe()?;
         let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
         for brick in index * group..bricks.len().min((index + 1) * group) {
             samples.gather(bricks, brick, &mut signs.values);
             signs.find(bricks, iso, brick, &mut found);
         }
         found.corners.shrink_to_fit();
-        found
+        Ok(found)
     };
-    let found: Vec<FoundCells> =
+    let found: Result<Vec<FoundCells>, Cancelled> =
         scatter(|_| (0..groups).into_par_iter().map_init(|| Signs::new(bricks), of_group).collect());
+    let found = found?;
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
     let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
     let mut corners = Vec::with_capacity(groups);
     for found in found {
+        progress.breathe()?;
         suspects.extend(
             found.suspects.iter().map(|&(brick, cell)| (brick as usize, cells.len() + cell as usize)),
         );
@@ -132,7 +151,7 @@ pub(crate) fn look(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Unflipp
         corners.push(found.corners);
         cut.add(found.cut);
     }
-    UnflippedCells { cells, corners, starts: starts(counts.into_iter()), suspects, cut }
+    Ok(UnflippedCells { cells, corners, starts: starts(counts.into_iter()), suspects, cut })
 }
 
 /// The crossing cells of some bricks.
@@ -368,19 +387,24 @@ fn number_vertices<'a>(
     bricks: &Bricks,
     starts_of_cells: &[usize],
     cells: &'a mut [CrossedCell],
-) -> Vec<BrickCounts> {
+    progress: &Progress<'_>,
+) -> Result<Vec<BrickCounts>, Cancelled> {
     let group = bricks.group();
     let groups = split(cells, starts_of_cells, group, 1);
     let of_group = |(index, mut cells): (usize, &'a mut [CrossedCell])| {
+        progress.breathe()?;
         let first = index * group;
-        (first..bricks.len().min(first + group)).map(move |brick| {
+        let counts = (first..bricks.len().min(first + group)).map(|brick| {
             let count = starts_of_cells[brick + 1] - starts_of_cells[brick];
             let (mine, rest) = std::mem::take(&mut cells).split_at_mut(count);
             cells = rest;
             number_brick(bricks, brick, mine)
-        })
+        });
+        Ok(counts.collect())
     };
-    scatter(|_| groups.into_par_iter().enumerate().flat_map_iter(of_group).collect())
+    let counts: Result<Vec<Vec<BrickCounts>>, Cancelled> =
+        scatter(|_| groups.into_par_iter().enumerate().map(of_group).collect());
+    Ok(counts?.concat())
 }
 
 /// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low

@@ -24,7 +24,7 @@ use super::report::Sides;
 use super::scope::DivisionScope;
 use super::stage::MeshStage;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 /// The result of the division.
@@ -202,11 +202,12 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         let mut masks = Vec::with_capacity(level.places.len());
         let mut regions = Vec::with_capacity(found.into_inner());
         for mut children in groups {
+            self.progress.breathe()?;
             masks.append(&mut children.masks);
             regions.append(&mut children.regions);
             boxes.add(children.boxes);
         }
-        let (places, neighbours) = link(&level.places, &level.neighbours, &masks);
+        let (places, neighbours) = link((&level.places, &level.neighbours), &masks, self.progress)?;
         Ok(BoxLevel { places, regions, neighbours })
     }
 
@@ -335,8 +336,18 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     }
 }
 
-/// The places of the remaining children, and their neighbours.
-fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u32; 3]>, Vec<[u32; 27]>) {
+/// Parents that are linked between two questions: some milliseconds.
+const LINKED: usize = 1 << 13;
+
+/// Places of boxes, and their neighbours.
+type LinkedBoxes = (Vec<[u32; 3]>, Vec<[u32; 27]>);
+
+/// The places of the remaining children, and their neighbours, from those of the boxes.
+fn link(
+    (places, neighbours): (&[[u32; 3]], &[[u32; 27]]),
+    masks: &[u8],
+    progress: &Progress<'_>,
+) -> Result<LinkedBoxes, Cancelled> {
     let mut firsts = Vec::with_capacity(masks.len());
     let mut count = 0;
     for mask in masks {
@@ -358,7 +369,17 @@ fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u3
     let of_parent = |parent: usize| {
         (0..8).filter(move |&child| masks[parent] >> child & 1 == 1).map(move |child| of_child(parent, child))
     };
-    scatter(|_| (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip())
+    let (mut all_places, mut all_neighbours) =
+        (Vec::with_capacity(count as usize), Vec::with_capacity(count as usize));
+    for first in (0..masks.len()).step_by(LINKED) {
+        progress.breathe()?;
+        let parents = first..masks.len().min(first + LINKED);
+        let (mut places, mut neighbours): (Vec<_>, Vec<_>) =
+            scatter(|_| parents.into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip());
+        all_places.append(&mut places);
+        all_neighbours.append(&mut neighbours);
+    }
+    Ok((all_places, all_neighbours))
 }
 
 /// For each child and each direction: the direction of the neighbour's parent, and which child of that parent

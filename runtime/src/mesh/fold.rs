@@ -23,6 +23,8 @@ use super::vertex::side::SharpVertex;
 /// How far a vertex goes back to lay a fold flat, in cells: the first of these that leaves fewest folds. Less
 /// than half a cell, so it stays at its edge.
 const BACK: [f64; 3] = [1.0 / 8.0, 1.0 / 4.0, 7.0 / 16.0];
+/// Quads between two questions whether to go on: some hundred microseconds.
+const AT_A_TIME: usize = 1 << 12;
 /// A triangle with less area, in parts of its longest side's square, has no side to look to.
 const FLAT: f64 = 1.0 / 2048.0;
 
@@ -48,16 +50,16 @@ pub(crate) struct SideCorner {
 }
 
 /// The quads at sharp vertices, which are ascending, of last cells from `first` on in all directions. Bricks
-/// that have such quads know their neighbours below.
-pub(crate) fn sharp_quads(
-    bricks: &Bricks,
-    crossings: &Crossings,
+/// that have such quads know their neighbours below. Every now and then it is asked whether to go on.
+pub(crate) fn sharp_quads<E: Send>(
+    (bricks, crossings): (&Bricks, &Crossings),
     sharp: &[SharpVertex],
     first: [usize; 3],
-) -> Vec<SharpQuad> {
+    go_on: impl Fn() -> Result<(), E> + Sync,
+) -> Result<Vec<SharpQuad>, E> {
     span!("quads at edges");
     if sharp.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let mut places = vec![0_u32; crossings.vertex_count()];
     (1..).zip(sharp).for_each(|(place, sharp)| places[sharp.vertex as usize] = place);
@@ -76,6 +78,7 @@ pub(crate) fn sharp_quads(
     };
     let group = bricks.group();
     let of_group = |around: &mut Around, index: usize| {
+        go_on()?;
         let mut found = Vec::new();
         for brick in index * group..bricks.len().min((index + 1) * group) {
             let [start, end] = [crossings.quads[brick], crossings.quads[brick + 1]];
@@ -98,12 +101,16 @@ pub(crate) fn sharp_quads(
                 }
             });
         }
-        found
+        Ok(found)
     };
     let groups = 0..bricks.len().div_ceil(group);
-    let found: Vec<Vec<SharpQuad>> =
+    let found: Vec<Result<Vec<SharpQuad>, E>> =
         scatter(|_| groups.into_par_iter().map_init(|| Around::new(bricks), of_group).collect());
-    found.into_iter().flatten().collect()
+    let mut quads = Vec::new();
+    for found in found {
+        quads.extend(found?);
+    }
+    Ok(quads)
 }
 
 impl SharpQuad {
@@ -178,33 +185,45 @@ fn is_folded(corners: [[f32; 3]; 3], outward: [f64; 3]) -> bool {
 }
 
 /// Where sharp vertices go back to, so that fewer triangles are folded: their places among the sharp ones,
-/// ascending, and positions. `at` is where each vertex was put at first.
-pub(crate) fn unfolded(
+/// ascending, and positions. `at` is where each vertex was put at first. Every now and then it is asked
+/// whether to go on.
+pub(crate) fn unfolded<E: Send>(
     quads: &[SharpQuad],
     sharp: &[SharpVertex],
     at: impl Fn(u32) -> [f32; 3] + Copy + Sync,
-) -> Vec<(u32, [f32; 3])> {
-    let is_folded = |quad: &SharpQuad| quad.least_folded(sharp, at).1 > 0;
-    let folded: Vec<bool> = scatter(|_| quads.into_par_iter().map(is_folded).collect());
-    let folded = quads.iter().zip(folded).filter(|(_, is_folded)| *is_folded);
-    let chosen = folded.flat_map(|(quad, _)| quad.sides.into_iter().flatten());
-    let mut around: FxHashMap<u32, Vec<&SharpQuad>> = chosen.map(|(place, _)| (place, Vec::new())).collect();
-    if around.is_empty() {
-        return Vec::new();
+    go_on: impl Fn() -> Result<(), E> + Sync,
+) -> Result<Vec<(u32, [f32; 3])>, E> {
+    let is_folded = |quad: &&SharpQuad| quad.least_folded(sharp, at).1 > 0;
+    let of_some = |some: &[SharpQuad]| {
+        go_on()?;
+        let folded = some.iter().filter(is_folded).flat_map(|quad| quad.sides).flatten();
+        Ok(folded.map(|(place, _)| place).collect())
+    };
+    let folded: Vec<Result<Vec<u32>, E>> = scatter(|_| quads.par_chunks(AT_A_TIME).map(of_some).collect());
+    let mut around: FxHashMap<u32, Vec<&SharpQuad>> = FxHashMap::default();
+    for folded in folded {
+        around.extend(folded?.into_iter().map(|place| (place, Vec::new())));
     }
-    for quad in quads {
-        for (place, _) in quad.sides.into_iter().flatten() {
-            if let Some(of_vertex) = around.get_mut(&place) {
-                of_vertex.push(quad);
+    if around.is_empty() {
+        return Ok(Vec::new());
+    }
+    for some in quads.chunks(AT_A_TIME) {
+        go_on()?;
+        for quad in some {
+            for (place, _) in quad.sides.into_iter().flatten() {
+                if let Some(of_vertex) = around.get_mut(&place) {
+                    of_vertex.push(quad);
+                }
             }
         }
     }
-    let mut moved: Vec<(u32, [f32; 3])> = around
-        .into_iter()
-        .filter_map(|(place, quads)| Some((place, less_folded(&sharp[place as usize], &quads, sharp, at)?)))
-        .collect();
+    let mut moved = Vec::new();
+    for (place, quads) in around {
+        go_on()?;
+        moved.extend(less_folded(&sharp[place as usize], &quads, sharp, at).map(|to| (place, to)));
+    }
     moved.sort_unstable_by_key(|&(place, _)| place);
-    moved
+    Ok(moved)
 }
 
 /// The first place on the way back of a vertex at which fewest of its triangles are folded; `None` if that is
@@ -240,15 +259,19 @@ fn less_folded(
 }
 
 /// Divides the quads at sharp vertices so that few triangles are folded, and tells which corners show which
-/// sides.
-pub(crate) fn crease(
+/// sides. Every now and then it is asked whether to go on.
+pub(crate) fn crease<E>(
     quads: &[SharpQuad],
     sharp: &[SharpVertex],
     positions: &[[f32; 3]],
     triangles: &mut [[u32; 3]],
-) -> Vec<SideCorner> {
+    go_on: impl Fn() -> Result<(), E>,
+) -> Result<Vec<SideCorner>, E> {
     let mut corners = Vec::new();
-    for one in quads {
+    for (n, one) in quads.iter().enumerate() {
+        if n % AT_A_TIME == 0 {
+            go_on()?;
+        }
         let first = 2 * one.quad as usize;
         let pair = &mut triangles[first..first + 2];
         pair.copy_from_slice(&one.least_folded(sharp, |vertex| positions[vertex as usize]).0);
@@ -262,5 +285,5 @@ pub(crate) fn crease(
             }
         }
     }
-    corners
+    Ok(corners)
 }

@@ -139,19 +139,25 @@ pub(crate) fn extract_hooked<F: Field>(
     drop((division, crossings, sharp));
     // Otherwise it is known by construction.
     if options.verify {
-        report.closed = is_closed(mesh.positions.len(), &mesh.triangles);
+        report.closed = check::are_closed(mesh.positions.len(), &mesh.triangles, || progress.breathe())?;
     }
     progress.finish()?;
     Ok((mesh, report))
 }
 
 /// Lets sharp vertices go back where triangles would be folded.
-fn go_back(mesh: &mut Mesh, quads: &[SharpQuad], sharp: &[SharpVertex]) {
+fn go_back<E: Send>(
+    mesh: &mut Mesh,
+    quads: &[SharpQuad],
+    sharp: &[SharpVertex],
+    go_on: impl Fn() -> Result<(), E> + Sync,
+) -> Result<(), E> {
     let positions = &mesh.positions;
-    let moved = fold::unfolded(quads, sharp, |vertex| positions[vertex as usize]);
+    let moved = fold::unfolded(quads, sharp, |vertex| positions[vertex as usize], go_on)?;
     for (place, position) in moved {
         mesh.positions[sharp[place as usize].vertex as usize] = position;
     }
+    Ok(())
 }
 
 /// The sides of vertices, and the corners that show them.
@@ -184,7 +190,7 @@ fn polygonize<F: Field>(
 ) -> Result<Polygons, MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
     let samples = sample::sample(field, (bricks, regions), None, progress)?;
-    let mut crossings = crossing::find(bricks, &samples, options.iso);
+    let mut crossings = crossing::find(bricks, &samples, options.iso, progress)?;
     let field_evaluations = samples.len() as u64;
     drop(samples);
     let count = crossings.vertex_count();
@@ -214,11 +220,12 @@ fn polygonize<F: Field>(
     };
     report.cut_sides.add(boxes.cut);
     crossings.corners = Vec::new();
-    let quads = fold::sharp_quads(bricks, &crossings, &done.sharp, [0; 3]);
-    go_back(&mut mesh, &quads, &done.sharp);
-    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
-    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles);
+    let (of, go_on) = ((bricks, &crossings), || progress.breathe());
+    let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
+    go_back(&mut mesh, &quads, &done.sharp, go_on)?;
+    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions, go_on)?;
+    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
-    surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
+    surface::repair_normals(&mut mesh, of, &done.doubtful, progress)?;
     Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
 }

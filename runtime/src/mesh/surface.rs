@@ -5,6 +5,7 @@
 //! each low side, filled from those bricks.
 
 use crate::parallel::*;
+use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
@@ -12,14 +13,21 @@ use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads
 use super::crossing::Crossings;
 use super::indexed::Mesh;
 
-/// The triangles of all quads, in the order of the cells that own them.
-pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
+/// The triangles of all quads, in the order of the cells that own them. Every now and then it is asked whether
+/// to go on.
+pub(crate) fn triangles<E: Send>(
+    bricks: &Bricks,
+    crossings: &Crossings,
+    positions: &[[f32; 3]],
+    go_on: impl Fn() -> Result<(), E> + Sync,
+) -> Result<Vec<[u32; 3]>, E> {
     span!("triangles");
     let group = bricks.group();
     let mut triangles = vec![[0; 3]; 2 * crossings.quad_count()];
     let groups = split(&mut triangles, &crossings.quads, group, 2);
     let fill = |around: &mut Around, (index, triangles): (usize, &mut [[u32; 3]])| {
         span!("triangles of some bricks");
+        go_on()?;
         let mut rest = triangles.as_chunks_mut().0;
         let first = index * group;
         for brick in first..bricks.len().min(first + group) {
@@ -33,9 +41,10 @@ pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f3
             around.fill(bricks, crossings, brick, lows);
             split_quads(around, positions, pairs);
         }
+        Ok(())
     };
-    scatter(|_| groups.into_par_iter().enumerate().for_each_init(|| Around::new(bricks), fill));
-    triangles
+    scatter(|_| groups.into_par_iter().enumerate().try_for_each_init(|| Around::new(bricks), fill))?;
+    Ok(triangles)
 }
 
 /// A crossed cell: its first vertex, and the sheets of its edges.
@@ -217,20 +226,27 @@ pub(super) fn halves([p, q, r, s]: [u32; 4], at: impl Fn(u32) -> [f32; 3]) -> [[
 }
 
 /// Repairs the normals of some vertices, given in ascending order, by their triangles: see [`judged`].
-pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
+pub(crate) fn repair_normals(
+    mesh: &mut Mesh,
+    (bricks, crossings): (&Bricks, &Crossings),
+    vertices: &[u32],
+    progress: &Progress<'_>,
+) -> Result<(), Cancelled> {
     span!("normals");
     if vertices.is_empty() {
-        return;
+        return Ok(());
     }
     let Mesh { positions, normals, triangles, .. } = mesh;
     let mut doubtful = DoubtfulNormals::new(0, normals.len(), vertices.iter().copied());
     for brick in bricks_around(bricks, crossings, vertices) {
+        progress.breathe()?;
         doubtful.add(&triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]], positions);
     }
     for (&vertex, &sum) in vertices.iter().zip(doubtful.sums()) {
         let normal = &mut normals[vertex as usize];
         *normal = judged(*normal, sum);
     }
+    Ok(())
 }
 
 /// The areas of the triangles of some vertices.

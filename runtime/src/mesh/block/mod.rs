@@ -143,7 +143,7 @@ pub(crate) fn extract<F: Field>(
     for known in tries.iter().map(|&more| block.cells(lattice, more)) {
         let window = Some(SampleWindow::of_cells(known));
         let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
-        let looked = crossing::look(&bricks, &samples, options.iso);
+        let looked = crossing::look(&bricks, &samples, options.iso, &progress)?;
         if chain::is_complete(&bricks, &looked, near, known) {
             found = Some(looked);
             break;
@@ -152,25 +152,28 @@ pub(crate) fn extract<F: Field>(
     let Some(mut found) = found else { return Err(MeshError::Reach { reach }) };
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     keep(&bricks, &mut found, near);
-    let mut crossings = found.numbered(&bricks, flipped);
+    let mut crossings = found.numbered(&bricks, flipped, &progress)?;
     if u32::try_from(crossings.vertex_count()).is_err() {
         return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
     }
     let source =
         VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
+    let go_on = || progress.breathe();
     // Quads with all of their corners.
     let first = near[0].map(|low| if low == 0 { 0 } else { low + 1 });
-    super::go_back(&mut mesh, &fold::sharp_quads(&bricks, &crossings, &done.sharp, first), &done.sharp);
+    let quads = fold::sharp_quads((&bricks, &crossings), &done.sharp, first, go_on)?;
+    super::go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     leave_quads_out(&bricks, &mut crossings, own);
-    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions);
-    let quads = fold::sharp_quads(&bricks, &crossings, &done.sharp, [0; 3]);
-    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles);
+    let of = (&bricks, &crossings);
+    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions, go_on)?;
+    let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
+    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
-    surface::repair_normals(&mut mesh, &bricks, &crossings, &doubtful);
+    surface::repair_normals(&mut mesh, of, &doubtful, &progress)?;
     progress.finish()?;
     let mut cut_sides = crossings.cut;
     cut_sides.add(boxes.cut);

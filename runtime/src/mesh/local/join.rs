@@ -1,5 +1,7 @@
 //! Triangles of some bricks, and the normals that triangles decide.
 
+use std::convert::Infallible;
+
 use rustc_hash::FxHashSet;
 
 use super::bricks::{BrickCorner, BrickMesh, BrickPlace, KeptBrick, linked, octet};
@@ -16,6 +18,11 @@ pub(super) struct Join {
     pub(super) bricks: Vec<([u32; 3], BrickPlace)>,
     /// Those that get triangles.
     pub(super) own: FxHashSet<BrickPlace>,
+}
+
+/// Old bricks may have gone: nobody stops what puts new ones in their place.
+fn always() -> Result<(), Infallible> {
+    Ok(())
 }
 
 /// Bricks that are kept apart, as the parts of one mesh.
@@ -92,8 +99,9 @@ impl BrickMesh {
         let mut positions: Vec<[f32; 3]> =
             names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
         sharp.iter().for_each(|one| positions[one.vertex as usize] = one.placed);
-        let quads = fold::sharp_quads(bricks, crossings, sharp, [0; 3]);
-        for (place, position) in fold::unfolded(&quads, sharp, |vertex| positions[vertex as usize]) {
+        let Ok(quads) = fold::sharp_quads((bricks, crossings), sharp, [0; 3], always);
+        let Ok(moved) = fold::unfolded(&quads, sharp, |vertex| positions[vertex as usize], always);
+        for (place, position) in moved {
             positions[sharp[place as usize].vertex as usize] = position;
         }
         let all = sharp.iter().zip(homes).filter(|(_, (home, _))| targets.contains(home));
@@ -109,9 +117,9 @@ impl BrickMesh {
         let JoinedBricks { bricks, crossings, names, sharp, homes } = self.gathered(join);
         let positions: Vec<[f32; 3]> =
             names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
-        let mut triangles = surface::triangles(&bricks, &crossings, &positions);
-        let quads = fold::sharp_quads(&bricks, &crossings, &sharp, [0; 3]);
-        let corners = fold::crease(&quads, &sharp, &positions, &mut triangles);
+        let Ok(mut triangles) = surface::triangles(&bricks, &crossings, &positions, always);
+        let Ok(quads) = fold::sharp_quads((&bricks, &crossings), &sharp, [0; 3], always);
+        let Ok(corners) = fold::crease(&quads, &sharp, &positions, &mut triangles, always);
         let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
             let mine = &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]];
             let first = 6 * crossings.quads[brick] as u32;

@@ -59,7 +59,7 @@ impl BrickMesh {
             let division = divide::divide(field, axes, (&options, scope), MAX_BRICKS, &progress)?;
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
             let samples = sample::sample(field, (&bricks, &regions), None, &progress)?;
-            let mut found = crossing::look(&bricks, &samples, options.iso);
+            let mut found = crossing::look(&bricks, &samples, options.iso, &progress)?;
             drop(samples);
             let flipped = match &mut touched {
                 None => crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects),
@@ -75,7 +75,7 @@ impl BrickMesh {
                 }
             };
             let suspects = suspects(bricks.len(), &found.starts, &found.suspects);
-            let crossings = found.numbered(&bricks, flipped);
+            let crossings = found.numbered(&bricks, flipped, &progress)?;
             self.check_limits(&bricks, &crossings, touched.as_ref())?;
             let source = VertexSource {
                 field,
