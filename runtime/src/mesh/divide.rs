@@ -336,6 +336,9 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     }
 }
 
+/// Places of boxes, and their neighbours.
+type Linked = (Vec<[u32; 3]>, Vec<[u32; 27]>);
+
 /// Parents that are linked between two questions: some milliseconds.
 const LINKED: usize = 1 << 13;
 
@@ -344,7 +347,7 @@ fn link(
     (places, neighbours): (&[[u32; 3]], &[[u32; 27]]),
     masks: &[u8],
     progress: &Progress<'_>,
-) -> Result<(Vec<[u32; 3]>, Vec<[u32; 27]>), Cancelled> {
+) -> Result<Linked, Cancelled> {
     let mut firsts = Vec::with_capacity(masks.len());
     let mut count = 0;
     for mask in masks {

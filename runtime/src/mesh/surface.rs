@@ -14,8 +14,7 @@ use super::crossing::Crossings;
 use super::indexed::Mesh;
 use super::vertex::side::SharpVertex;
 
-/// The triangles of all quads, in the order of the cells that own them. Every now and then it is asked whether
-/// to go on.
+/// The triangles of all quads, in the order of the cells that own them. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
     bricks: &Bricks,
     crossings: &Crossings,
@@ -302,8 +301,8 @@ pub(crate) struct SideCorner {
 }
 
 /// Divides the quads at sharp vertices so that no triangle is folded, if that can be, and tells which corners
-/// show which sides. `sharp` is ascending. Bricks that have quads know their neighbours below. For each of them
-/// it is asked whether to go on.
+/// show which sides. `sharp` is ascending. Bricks that have quads know their neighbours below. It
+/// asks for each of them whether to go on.
 pub(crate) fn crease<E>(
     (bricks, crossings): (&Bricks, &Crossings),
     sharp: &[SharpVertex],
