@@ -30,9 +30,9 @@ const STEP: isize = 1 << 16;
 const SHARE: u64 = 4;
 /// The stack that the first thread has from the beginning where addresses are few: it could not be had later.
 const STACK: usize = 1 << 20;
-/// From so many bytes on, what is asked for has pages of its own, and the system has them again once it is not
-/// needed. By itself glibc raises this number with each such part that is freed, up to 32 MiB: what passes and
-/// stages leave behind then stays with the process.
+/// From so many bytes on, what is asked for has pages of its own, and the system has them again once it is
+/// freed. By itself glibc raises this number with each such part that is freed, up to 32 MiB: what passes
+/// leave behind then stays with the process.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const OWN_PAGES: i32 = 4 << 20;
 /// The exit code of a limit.

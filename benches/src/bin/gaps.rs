@@ -8,8 +8,8 @@
 //! Work that is cancelled ends at the next look, so a gap is the longest that it may go on. Times are those
 //! of the processor, which Linux alone tells (`jbt_testkit::gaps`). Only scenes whose name has PART are
 //! looked at; ENGINE is `scalar`, `lanes` or `jit`. Behind a gap of more than 50 ms stands a `!`. All of them
-//! take half an hour, most of it the scalar reference. With RESOLUTION it is one large mesh, with its triangles
-//! in millions, and writing it: each piece that is written is a look, as whoever takes it may refuse.
+//! take half an hour, most of it the scalar reference. With RESOLUTION it is one large mesh,
+//! and writing it: each piece that is written is a look, as whoever takes it may refuse.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::fs;

@@ -13,8 +13,7 @@ use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads
 use super::crossing::Crossings;
 use super::indexed::Mesh;
 
-/// The triangles of all quads, in the order of the cells that own them. Every now and then it is asked whether
-/// to go on.
+/// The triangles of all quads, in the order of the cells that own them. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
     bricks: &Bricks,
     crossings: &Crossings,

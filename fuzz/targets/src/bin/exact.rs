@@ -3,6 +3,7 @@
 //! ```text
 //! exact --record FILE          all 2^32 inputs of each op of one operand; resumes where FILE ends
 //! exact --stride 65537         every 65,537th input, some seconds
+//! exact --ops sin,sqrt         these ops alone
 //! ```
 //!
 //! Ops of two operands meet all pairs of 512 special numbers, ops of three operands random triples
@@ -63,12 +64,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let number = |name: &str, default: u64| options.get(name).map_or(Ok(default), |text| text.parse());
     let stride = number("stride", 1)?;
     let triples = number("triples", 100_000_000 / stride.clamp(1, 1000))?;
+    let named: Vec<&str> = options.get("ops").map_or_else(Vec::new, |names| names.split(',').collect());
+    if let Some(name) = named.iter().find(|name| !Op::ALL.iter().any(|op| op.name() == **name)) {
+        return Err(format!("there is no op {name}").into());
+    }
     let record = options.get("record");
     let done = record.and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
     let begin = Instant::now();
     let mut total = Found::default();
     // A slope is one of the whole function, and the reference has none of a value alone.
-    for subject in Op::ALL.iter().filter(|op| !op.is_slope()).flat_map(|&op| subjects(op)) {
+    let asked = |op: &&Op| !op.is_slope() && (named.is_empty() || named.contains(&op.name()));
+    for subject in Op::ALL.iter().filter(asked).flat_map(|&op| subjects(op)) {
         let mut all = Found::default();
         for (name, run) in parts(&subject, stride, triples) {
             if let Some(line) = done.lines().find(|line| line.starts_with(&format!("{name},"))) {
@@ -100,10 +106,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn options() -> Result<BTreeMap<String, String>, String> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let pairs = words.chunks(2).map(|pair| match pair {
-        [name, value] if ["--stride", "--triples", "--record"].contains(&name.as_str()) => {
+        [name, value] if ["--stride", "--triples", "--ops", "--record"].contains(&name.as_str()) => {
             Ok((name[2..].to_owned(), value.clone()))
         }
-        _ => Err(format!("usage: exact [--stride N] [--triples N] [--record FILE]; found {pair:?}")),
+        _ => Err(format!(
+            "usage: exact [--stride N] [--triples N] [--ops NAMES] [--record FILE]; found {pair:?}"
+        )),
     });
     pairs.collect()
 }
