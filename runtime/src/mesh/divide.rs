@@ -337,7 +337,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
 }
 
 /// Places of boxes, and their neighbours.
-type Linked = (Vec<[u32; 3]>, Vec<[u32; 27]>);
+type LinkedBoxes = (Vec<[u32; 3]>, Vec<[u32; 27]>);
 
 /// Parents that are linked between two questions: some milliseconds.
 const LINKED: usize = 1 << 13;
@@ -347,7 +347,7 @@ fn link(
     (places, neighbours): (&[[u32; 3]], &[[u32; 27]]),
     masks: &[u8],
     progress: &Progress<'_>,
-) -> Result<Linked, Cancelled> {
+) -> Result<LinkedBoxes, Cancelled> {
     let mut firsts = Vec::with_capacity(masks.len());
     let mut count = 0;
     for mask in masks {
