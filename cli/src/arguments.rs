@@ -316,7 +316,8 @@ pub struct EvalArguments {
 const EVAL_HELP: &str = "\
 The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
 `nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: {columns}.
---query owner.path adds the number of the leaf that decides and, last, the way down to it in words.
+--query owner.path adds the number of the leaf that decides and, last, the way down to it in words; --query weights adds
+how much each leaf has to say, and --query body/arm.weight what has a name.
 
 Examples:
   jbt eval hero.jbt --points points.csv --query all -o answers.csv

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
-use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format, LengthUnit};
+use jbt::export::{self, ColorEncoding, ExportOptions, Format, LengthUnit};
 use jbt::mesh::{Mesh, MeshPiece, Simplify, ThinReport};
 use jbt::{Box3, CheckedTree, MeshCounters, Model, ModelOrigin, ModelUp, Polygonize, Polygonized, Tree};
 use serde_json::json;
@@ -11,8 +11,8 @@ use serde_json::json;
 use crate::arguments::{MeshArguments, Switch};
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Destination, Output, grouped, plural, warn};
-use crate::part_files;
+use crate::output::{Destination, finish_all, grouped, plural, warn};
+use crate::part_files::{self, MeshFileError};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
 use crate::sequence;
@@ -57,19 +57,16 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
 
     // The file is written while the mesh is measured.
     let places = parts.as_deref().unwrap_or(std::slice::from_ref(&destination));
-    let mut outputs = places.iter().map(Output::open).collect::<Result<Vec<_>, _>>()?;
-    let mut write = || match parts {
-        Some(_) => part_files::write(&made.mesh, destination.kind, &options, &mut outputs),
-        None => export::write_with(&made.mesh, destination.kind, &options, &mut outputs[0])
-            .map_err(|error| (0, error)),
+    let write = || match parts {
+        Some(_) => part_files::write_parts(&made.mesh, &options, places),
+        None => part_files::write(&made.mesh, &destination, &options).map(|written| vec![written]),
     };
-    let mut both = || rayon::join(&mut write, || MeshMeasures::new(&made));
+    let mut both = || rayon::join(write, || MeshMeasures::new(&made));
     let (written, measures) = arguments.work.run(&mut both);
-    written.map_err(|(place, error)| match error {
-        ExportError::Write(error) => outputs[place].failure(error),
-        error => scene.failure(&error),
-    })?;
-    outputs.into_iter().try_for_each(Output::finish)?;
+    finish_all(written.map_err(|error| match error {
+        MeshFileError::Output(failure) => failure,
+        MeshFileError::Export(error) => scene.failure(&error),
+    })?)?;
 
     let mut warnings = warnings(&made, destination.kind);
     if !quiet {

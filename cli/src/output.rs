@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Style};
 use jbt::diagnostic::{Severity, escape};
-use jbt::export::AtomicFile;
+use jbt::export::{AtomicFile, WrittenFile};
 
 use crate::failure::Failure;
 use crate::signals;
@@ -53,12 +53,24 @@ impl Write for OutputTarget {
 impl Output {
     /// Opens a place of the command line; `-` is the standard output.
     pub fn open<K>(destination: &Destination<K>) -> Result<Self, Failure> {
+        Self::create(destination, AtomicFile::create)
+    }
+
+    /// The same as one of many, which are not all open at once: see [`close`](Self::close).
+    pub fn open_one_of_many<K>(destination: &Destination<K>) -> Result<Self, Failure> {
+        Self::create(destination, AtomicFile::create_with_name)
+    }
+
+    fn create<K>(
+        destination: &Destination<K>,
+        create: fn(&Path, bool) -> io::Result<AtomicFile>,
+    ) -> Result<Self, Failure> {
         let path = &destination.path;
         let name = path.display().to_string();
         let target = if is_standard(path) {
             OutputTarget::Standard(io::stdout())
         } else {
-            let file = AtomicFile::create(path, destination.replace);
+            let file = create(path, destination.replace);
             let file = file.map_err(|error| Failure::io("write", &name, error))?;
             file.temporary().into_iter().for_each(signals::begin);
             if file.is_in_place() {
@@ -81,18 +93,63 @@ impl Output {
     }
 
     /// Writes what is left, and puts a file in the place of its old one.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(self) -> Result<(), Failure> {
+        finish_all(vec![self.close()?])
+    }
+
+    /// Writes what is left. A file is on the disk then, and not in its place yet.
+    pub fn close(mut self) -> Result<WrittenOutput, Failure> {
         self.writer.flush().map_err(|error| self.failure(error))?;
         let Self { writer, name } = self;
         // Everything has been flushed.
         let (target, _) = writer.into_parts();
-        match target {
-            OutputTarget::Standard(_) => Ok(()),
+        let file = match target {
+            OutputTarget::Standard(_) => None,
             OutputTarget::File(file) => {
-                let put = || signals::check().and_then(|()| file.finish());
-                signals::unstopped(put).map_err(|error| Failure::io("write", name, error))
+                Some(file.close().map_err(|error| Failure::io("write", &name, error))?)
             }
+        };
+        Ok(WrittenOutput { file, name })
+    }
+}
+
+/// A result that is whole, and not in its place yet.
+pub struct WrittenOutput {
+    /// Nothing on the standard output.
+    file: Option<WrittenFile>,
+    name: String,
+}
+
+/// Puts files in their places, one after the other; no signal comes between. Where one cannot be put there,
+/// those behind it stay as they were, and so do those before it that were not there; of those that were, the
+/// old contents are gone, and a warning names them.
+pub fn finish_all(outputs: Vec<WrittenOutput>) -> Result<(), Failure> {
+    signals::unstopped(|| {
+        let mut done: Vec<(String, Option<PathBuf>)> = Vec::new();
+        for WrittenOutput { file, name } in outputs {
+            let Some(file) = file else { continue };
+            let new = file.path().filter(|path| path.symlink_metadata().is_err()).map(Path::to_owned);
+            let put = if done.is_empty() { signals::check() } else { Ok(()) };
+            if let Err(error) = put.and_then(|()| file.finish()) {
+                take_back(done);
+                return Err(Failure::io("write", name, error));
+            }
+            done.push((name, new));
         }
+        Ok(())
+    })
+}
+
+/// Removes files that were not there before, and tells of the others.
+fn take_back(done: Vec<(String, Option<PathBuf>)>) {
+    let stays = |new: Option<PathBuf>| new.is_none_or(|path| std::fs::remove_file(path).is_err());
+    let left: Vec<String> = done.into_iter().filter_map(|(name, new)| stays(new).then_some(name)).collect();
+    if !left.is_empty() {
+        warn(&format!(
+            "{} written already, and new: {}",
+            plural(left.len() as u64, "file is", "files are"),
+            left.join(", ")
+        ));
     }
 }
 
@@ -271,5 +328,36 @@ mod tests {
         assert!(output.finish().is_err(), "it came to be there in the meantime");
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn of_several_files_all_or_none_are_new() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let written = |name: &str, replace: bool| {
+            let mut output =
+                Output::open_one_of_many(&Destination { path: place(name), kind: (), replace }).unwrap();
+            output.write_all(b"new").unwrap();
+            output.close().unwrap()
+        };
+        let names = || {
+            let entries = fs::read_dir(folder.path()).unwrap();
+            let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+            names.sort();
+            names
+        };
+        fs::write(place("b"), "old").unwrap();
+        let outputs = vec![written("a", false), written("b", true), written("c", false), written("d", true)];
+        assert_eq!(fs::read(place("b")).unwrap(), b"old");
+        // Somebody else is faster.
+        fs::write(place("c"), "theirs").unwrap();
+        assert!(finish_all(outputs).is_err());
+        assert_eq!(names(), ["b", "c"], "what was not there is not there");
+        assert_eq!(fs::read(place("b")).unwrap(), b"new", "what was replaced is");
+        assert_eq!(fs::read(place("c")).unwrap(), b"theirs");
+        finish_all(vec![written("a", false), written("d", true)]).unwrap();
+        assert_eq!(names(), ["a", "b", "c", "d"]);
+        drop(written("e", false));
+        assert_eq!(names().len(), 4);
     }
 }

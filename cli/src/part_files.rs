@@ -2,8 +2,9 @@
 //!
 //! The name of the part takes the place of the braces, as far as every file system takes it. All files are
 //! written before the first one takes its place: one that cannot be written leaves the others as they were.
+//! Few of them are open at once, so more of them than that have temporary names meanwhile.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -12,11 +13,14 @@ use jbt::export::{self, ExportError, ExportOptions, Format};
 use jbt::mesh::Mesh;
 
 use crate::failure::Failure;
-use crate::output::{Destination, Output, check_place};
+use crate::output::{Destination, Output, WrittenOutput, check_place};
 use crate::sequence::BRACES;
 
 /// The longest name of a part in the name of a file, in bytes: file systems take 255 for all of it.
 const LONGEST: usize = 120;
+
+/// Files that may be open at once: systems let a process have 256 of them or more.
+const OPEN: usize = 16;
 
 /// Names that stand for devices on Windows, whatever follows behind a point.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
@@ -44,12 +48,12 @@ pub fn destinations(
     }
     let file = template.path.file_name().and_then(OsStr::to_str).unwrap_or_default();
     let names = file_names(parts.iter().map(|part| part.name));
+    let scene = scene.canonicalize().ok();
     let mut destinations = Vec::with_capacity(names.len());
     for name in names {
         let path = template.path.with_file_name(file.replace(BRACES, &name));
         check_place(&path)?;
-        let is_scene = || Some(path.canonicalize().ok()? == scene.canonicalize().ok()?);
-        if is_scene() == Some(true) {
+        if scene.is_some() && path.canonicalize().ok() == scene {
             let name = path.display();
             return Err(Failure::Usage(format!("{name} is the scene itself, and a part would replace it")));
         }
@@ -58,32 +62,72 @@ pub fn destinations(
     Ok(destinations)
 }
 
-/// Writes each piece of a mesh to its place. An error comes with that of the file.
+/// Why a mesh was not written.
+pub enum MeshFileError {
+    /// Its file cannot be had.
+    Output(Failure),
+    /// The format does not take it.
+    Export(ExportError),
+}
+
+/// Writes a mesh to a file that is not in its place yet.
 pub fn write(
+    mesh: &Mesh,
+    destination: &Destination<Format>,
+    options: &ExportOptions,
+) -> Result<WrittenOutput, MeshFileError> {
+    write_to(Output::open(destination).map_err(MeshFileError::Output)?, mesh, destination.kind, options)
+}
+
+/// Writes each piece of a mesh to a file that is not in its place yet.
+pub fn write_parts(
+    mesh: &Mesh,
+    options: &ExportOptions,
+    places: &[Destination<Format>],
+) -> Result<Vec<WrittenOutput>, MeshFileError> {
+    let pieces = mesh.pieces();
+    let mut written = Vec::with_capacity(places.len());
+    for (place, (destination, piece)) in places.iter().zip(&pieces).enumerate() {
+        let many = places.len() > OPEN;
+        let output = if many { Output::open_one_of_many(destination) } else { Output::open(destination) };
+        let constants = options.constants.get(place).cloned().into_iter().collect();
+        let options = ExportOptions { name: piece.name.map(str::to_owned), constants, ..options.clone() };
+        let output = output.map_err(MeshFileError::Output)?;
+        written.push(write_to(output, &mesh.piece(piece), destination.kind, &options)?);
+    }
+    Ok(written)
+}
+
+fn write_to(
+    mut output: Output,
     mesh: &Mesh,
     format: Format,
     options: &ExportOptions,
-    outputs: &mut [Output],
-) -> Result<(), (usize, ExportError)> {
-    let pieces = mesh.pieces();
-    for (place, (output, piece)) in outputs.iter_mut().zip(&pieces).enumerate() {
-        let constants = options.constants.get(place).cloned().into_iter().collect();
-        let name = piece.name.map(str::to_owned);
-        let options = ExportOptions { name, constants, ..options.clone() };
-        export::write_with(&mesh.piece(piece), format, &options, output).map_err(|error| (place, error))?;
+) -> Result<WrittenOutput, MeshFileError> {
+    match export::write_with(mesh, format, options, &mut output) {
+        Ok(()) => output.close().map_err(MeshFileError::Output),
+        Err(ExportError::Write(error)) => Err(MeshFileError::Output(output.failure(error))),
+        Err(error) => Err(MeshFileError::Export(error)),
     }
-    Ok(())
 }
 
 /// Names of parts as names of files, each another one, also where upper case and lower case are one.
 fn file_names<'a>(parts: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = HashSet::new();
+    // Of each name, the number from which others may be free.
+    let mut next: HashMap<String, usize> = HashMap::new();
     let mut names = Vec::new();
     for part in parts {
         let first = file_name(part);
-        let numbered = |number: usize| if number == 1 { first.clone() } else { format!("{first}-{number}") };
-        let free = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase()));
-        names.extend(free);
+        let number = next.entry(first.to_lowercase()).or_insert(1);
+        let name = loop {
+            let name = if *number == 1 { first.clone() } else { format!("{first}-{number}") };
+            *number += 1;
+            if taken.insert(name.to_lowercase()) {
+                break name;
+            }
+        };
+        names.push(name);
     }
     names
 }
@@ -129,5 +173,10 @@ mod tests {
         assert!(file_name(&"ж".repeat(1000)).len() <= LONGEST);
         let names = ["a b", "a_b", "A_B", "a_b-2", "c"];
         assert_eq!(file_names(names.into_iter()), ["a_b", "a_b-2", "A_B-3", "a_b-2-2", "c"]);
+        // In time that grows with their number alone.
+        let many: Vec<String> = (0..60_000).map(|index| format!("{}{index}", "x".repeat(LONGEST))).collect();
+        let names = file_names(many.iter().map(String::as_str));
+        assert_eq!(names.iter().collect::<HashSet<_>>().len(), many.len());
+        assert!(names[59_999].ends_with("x-60000"));
     }
 }

@@ -52,10 +52,16 @@ pub const MAX_POINT_WORK: usize = 1 << 17;
 pub const MAX_GAP_PAIRS: u32 = 1 << 22;
 /// What may be cut for the distance of two solids: rows that run in boxes. Some nanoseconds each.
 pub const MAX_GAP_WORK: u64 = 1 << 28;
+/// Bytes of the boxes that are kept for the distance of two solids, and of the rows that run in those which
+/// are not cut yet. With more, the bounds are those of the pairs so far.
+pub const MAX_GAP_BYTES: usize = 256 << 20;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
 pub const MAX_ATTRIBUTES: usize = 32;
+/// Numbers that the weights of leaves may take: one for each leaf, in each row of a leaf. All of them are
+/// read for a point, which takes some tenths of a nanosecond each.
+pub const MAX_WEIGHT_NUMBERS: u64 = 1 << 22;
 /// Names of constants in one model: the leaves below a node are searched once for each.
 pub const MAX_CONSTANTS: usize = 64;
 /// Points of one skeleton, and numbers of one list.

@@ -219,6 +219,12 @@ impl Selection {
         self.present.iter().map(|&table| self.active(table).len()).sum()
     }
 
+    /// The bytes of its lists.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.words) + size_of_val(&*self.spans) + size_of_val(&*self.present)
+    }
+
     /// Whether no table has an active row.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -196,6 +196,7 @@ impl PyModel {
             default,
             mixing: found.ok_or_else(wrong)?,
             kind: if turns { GroupKind::Direction } else { GroupKind::Numbers },
+            ..AttributeGroup::color()
         };
         let mut model = self.0.model.clone();
         match model.attributes.iter_mut().find(|known| known.name == group.name) {

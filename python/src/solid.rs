@@ -2,7 +2,7 @@
 
 use jbt::diagnostic::Span;
 use jbt::solid::{Measure, Solid};
-use jbt::tree::LeafConstant;
+use jbt::tree::{LeafConstant, WeightOf};
 use jbt::{Box3, Query};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -10,11 +10,11 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 
 use crate::constant::object;
-use crate::error::{Refusal, refused};
+use crate::error::{OrRaise as _, Refusal, refused};
 use crate::evaluator::PyEvaluator;
 use crate::mesh::{fineness, region};
 use crate::model::PyModel;
-use crate::work::CallEffort;
+use crate::work::{CallEffort, compiler};
 
 /// The smallest and the largest corner of a box, in the world.
 type WorldCorners = ([f64; 3], [f64; 3]);
@@ -103,6 +103,20 @@ impl PyModel {
                 .map_or(0, |(source, span)| source.source().position(span.start as usize).0)
         };
         owners_dict(py, found, line)
+    }
+
+    /// What answers the weights of leaves, or of what has these paths, and behind them that of nobody.
+    fn weights(&self, py: Python<'_>, paths: Option<Vec<String>>) -> PyResult<PyEvaluator> {
+        let of_leaves = vec![WeightOf::Leaves];
+        let asked = paths.as_ref().map(|paths| paths.iter().map(|path| WeightOf::Named(path)).collect());
+        let asked: Vec<WeightOf<'_>> = asked.unwrap_or(of_leaves);
+        let mut tree = self.checked(py)?.of_attributes(&[""; 0]).or_raise(py)?;
+        for of in asked.into_iter().chain([WeightOf::Default]) {
+            tree = tree.with_weights(of).or_raise(py)?;
+        }
+        let compiled = compiler(None).compile(&tree);
+        let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(Query::ATTRIBUTES))?;
+        Ok(PyEvaluator::new(made, tree))
     }
 
     /// What answers the field in the numbers that decide sides: as [`compile`](Self::compile) of the field.

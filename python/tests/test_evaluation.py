@@ -208,6 +208,29 @@ def test_no_points(peanut: jbt.Model) -> None:
         assert len(ev(nothing)) == 0
 
 
+def test_weights_mix_what_leaves_have() -> None:
+    left = jbt.point((0, 0, 0), radius=2).color((1, 0, 0))
+    right = jbt.point((1, 0, 0), radius=2).color((0, 1, 0.5))
+    model = left + right
+    points = np.random.default_rng(3).uniform(-2, 3, (500, 3)).astype(np.float32)
+    weights = model.weights(points)
+    assert weights.names == ("sum.0/color.0/point", "sum.1/color.0/point")
+    assert weights.values.shape == (500, 2) and weights.default.shape == (500,)
+    np.testing.assert_allclose(weights.values.sum(axis=1) + weights.default, 1, atol=1e-6)
+    colors = np.array([[1, 0, 0], [0, 1, 0.5]])
+    mixed = weights.values @ colors + weights.default[:, None] * np.ones(3)
+    np.testing.assert_allclose(mixed, model.compile()(points).color, atol=1e-6)
+    assert (weights.default == 1).any() and (weights.values.max(axis=1) < 1).any()
+    named = jbt.loads("jbt 1 sum { left: point { radius 2 } point { at (1 0 0) radius 2 } }")
+    only = named.weights(points, of=["left"])
+    assert only.names == ("left",)
+    np.testing.assert_array_equal(only["left"], weights.values[:, 0])
+    with pytest.raises(jbt.SceneError, match="nothing in the model is called `leg`"):
+        named.weights(points, of=["leg"])
+    with pytest.raises(KeyError, match="there are left"):
+        only["right"]
+
+
 def test_contains_and_owner(peanut: jbt.Model) -> None:
     assert peanut.contains([[0, 0.4, 0], [0, 3, 0]]).tolist() == [True, False]
     owners = peanut.owner([[0, 0.5, 0], [0, -0.5, 0], [9, 9, 9]])

@@ -24,7 +24,7 @@ impl Layout {
                 Planes::Channels => {
                     for group in attributes {
                         groups.push((group.clone(), names.len()));
-                        names.extend((0..group.width()).map(|channel| group.channel(channel)));
+                        names.extend((0..group.width()).map(|channel| group.title(channel)));
                     }
                 }
             }

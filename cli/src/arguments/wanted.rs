@@ -3,7 +3,7 @@
 use std::fmt;
 
 use clap::builder::{PossibleValue, TypedValueParser};
-use jbt::tree::{DEFINED, OWNER};
+use jbt::tree::{DEFAULT_WEIGHT, DEFINED, OWNER, WEIGHT, WEIGHTS, WeightOf};
 use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
 use crate::failure::Failure;
@@ -55,17 +55,38 @@ impl WantedAnswers {
         let Some(groups) = &self.groups else {
             return if self.owner_path { tree.with_owners() } else { Ok(tree) };
         };
-        let has_own = tree.attributes().iter().any(|group| &*group.name == OWNER);
-        let asks_owner = groups.iter().any(|name| name == OWNER);
-        // A group of the model's own numbers no leaves: of it there is no path.
-        let mut tree = if self.owner_path || asks_owner && !has_own { tree.with_owners()? } else { tree };
-        let mut asked: Vec<&str> = groups.iter().filter_map(|name| name.strip_suffix(DEFINED)).collect();
-        asked.sort_unstable();
-        asked.dedup();
-        for name in asked {
-            tree = tree.with_coverage(name)?;
+        let declared: Vec<String> = tree.attributes().iter().map(|group| group.name.to_string()).collect();
+        let is_own = |name: &str| declared.iter().any(|own| own == name);
+        let asks = |name: &str| groups.iter().any(|asked| asked == name);
+        // A group of the model's own numbers no leaves: of it there is no path. Others come behind, because
+        // numbers are those of this tree.
+        let mut tree =
+            if self.owner_path || asks(OWNER) && !is_own(OWNER) { tree.with_owners()? } else { tree };
+        let mut chosen: Vec<&str> = Vec::new();
+        for name in groups.iter().map(String::as_str) {
+            if chosen.contains(&name) {
+                continue;
+            }
+            chosen.push(name);
+            if is_own(name) || name == OWNER {
+                continue;
+            }
+            if name == WEIGHTS {
+                tree = tree.with_weights(WeightOf::Leaves)?;
+                // The rest of the weight goes with them.
+                if !asks(DEFAULT_WEIGHT) {
+                    tree = tree.with_weights(WeightOf::Default)?;
+                    chosen.push(DEFAULT_WEIGHT);
+                }
+            } else if name == DEFAULT_WEIGHT {
+                tree = tree.with_weights(WeightOf::Default)?;
+            } else if let Some(path) = name.strip_suffix(WEIGHT) {
+                tree = tree.with_weights(WeightOf::Named(path))?;
+            } else if let Some(group) = name.strip_suffix(DEFINED) {
+                tree = tree.with_coverage(group)?;
+            }
         }
-        tree.of_attributes(groups)
+        tree.of_attributes(&chosen)
     }
 
     /// Refuses what is text.

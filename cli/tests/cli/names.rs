@@ -136,6 +136,65 @@ part \"rest\" {
     ran.code(2).says("has an attribute `owner` of its own");
 }
 
+/// Weights of leaves, of names and of nobody are columns of their own, in the order of the tree.
+#[test]
+fn weights_are_columns() {
+    let scene = "jbt 1 attribute rough 1
+body: sum {
+    left: color (1 0 0) { point { radius 2 } }
+    right: translate (1 0 0) { point { radius 2 } }
+}";
+    let folder = Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n0.5,0,0\n-1.5,0,0\n9,0,0\n");
+    let table = |query: &str| {
+        folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", query]).code(0).stdout()
+    };
+    let all = table("weights,color.defined,owner.path");
+    let lines: Vec<&str> = all.lines().collect();
+    assert_eq!(
+        lines[0],
+        "x,y,z,field,owner,weights.body.0/left.0/point,weights.body.1/right.0/point,weights.default,color.defined,owner.path"
+    );
+    assert!(lines[1].ends_with(",0.5,0.5,0,0.5,body.0/left.0/point"), "{}", lines[1]);
+    assert!(lines[2].ends_with(",1,0,0,1,body.0/left.0/point"), "{}", lines[2]);
+    assert!(lines[3].ends_with(",-1,0,0,1,0,"), "{}", lines[3]);
+    let named = table("left.weight,body/right.weight,weights.default");
+    let lines: Vec<&str> = named.lines().collect();
+    assert_eq!(lines[0], "x,y,z,field,left.weight,body/right.weight,weights.default");
+    assert!(lines[1].ends_with(",0.5,0.5,0") && lines[3] == "9,0,0,0,0,0,1", "{named}");
+    let refused = |query: &str, words: &str| {
+        folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", query]).code(2).says(words);
+    };
+    refused("leg.weight", "nothing in the model is called `leg`");
+    refused("left.0.weight.weight", "is no path");
+    // A model may have a group of that name.
+    let own = Folder::new()
+        .with("a.jbt", "jbt 1 attribute weights 1 default 7 point { radius 1 }")
+        .with("p.csv", "x,y,z\n0,0,0\n");
+    let ran = own.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", "weights"]).code(0);
+    assert_eq!(ran.stdout(), "x,y,z,field,weights\n0,0,0,1,7\n");
+}
+
+/// Of more parts than a process may have files open, each has its file.
+#[cfg(target_os = "linux")]
+#[test]
+fn many_parts_have_files_though_few_are_open() {
+    let part = |index: usize| {
+        format!("part \"p{index}\" {{ point {{ at ({} 0 0) surface_radius 0.4 }} }}\n", 2 * index)
+    };
+    let folder = Folder::new().with("many.jbt", format!("jbt 1\n{}", (0..60).map(part).collect::<String>()));
+    let binary = env!("CARGO_BIN_EXE_jbt");
+    let line = format!("ulimit -n 40; exec {binary} mesh many.jbt --parts -o 'many_{{}}.stl' --cell 0.4");
+    let ran =
+        std::process::Command::new("sh").args(["-c", &line]).current_dir(folder.path("")).output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let files: Vec<String> = std::fs::read_dir(folder.path(""))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".stl") || name.starts_with('.'))
+        .collect();
+    assert!(files.len() == 60 && files.iter().all(|name| name.starts_with("many_p")), "{files:?}");
+}
+
 /// A chain of many nodes has a way that is longer than anybody reads.
 #[test]
 fn long_ways_keep_their_ends() {

@@ -66,13 +66,28 @@ pub struct AttributeGroup {
     pub mixing: Mixing,
     /// What they are.
     pub kind: GroupKind,
+    /// Of a group that nobody declares, as [`owner`](crate::check::OWNER): the names of its columns where
+    /// answers are a table, one for each real. None of others, which have those of their
+    /// [channels](Self::channel).
+    pub titles: Arc<[String]>,
 }
 
 impl AttributeGroup {
     /// The group that every model has: `color`, linear red, green and blue, mixed, white by default.
     #[must_use]
     pub fn color() -> Self {
-        Self { name: "color".into(), default: vec![1.0; 3], mixing: Mixing::Blend, kind: GroupKind::Numbers }
+        Self { default: vec![1.0; 3], ..Self::mixed("color") }
+    }
+
+    /// A group of no reals so far, which are numbers, and mixed.
+    pub(crate) fn mixed(name: &str) -> Self {
+        Self {
+            name: name.into(),
+            default: Vec::new(),
+            mixing: Mixing::Blend,
+            kind: GroupKind::Numbers,
+            titles: Arc::default(),
+        }
     }
 
     /// A group of directions, mixed: see [`GroupKind::Direction`].
@@ -87,8 +102,7 @@ impl AttributeGroup {
     /// ```
     #[must_use]
     pub fn direction(name: &str, default: [f64; 3]) -> Self {
-        let default = default.to_vec();
-        Self { name: name.into(), default, mixing: Mixing::Blend, kind: GroupKind::Direction }
+        Self { default: default.to_vec(), kind: GroupKind::Direction, ..Self::mixed(name) }
     }
 
     /// Whether its values turn with what moves their leaves.
@@ -113,6 +127,12 @@ impl AttributeGroup {
             2..=4 => format!("{}.{}", self.name, letters[index]),
             _ => format!("{}.{index}", self.name),
         }
+    }
+
+    /// The name of the column of a channel where answers are a table.
+    #[must_use]
+    pub fn title(&self, index: usize) -> String {
+        self.titles.get(index).cloned().unwrap_or_else(|| self.channel(index))
     }
 }
 
@@ -210,15 +230,12 @@ mod tests {
 
     #[test]
     fn channels_have_letters_up_to_four() {
-        let group = |width: usize| AttributeGroup {
-            name: "n".into(),
-            default: vec![0.0; width],
-            mixing: Mixing::Blend,
-            kind: GroupKind::Numbers,
-        };
+        let group = |width: usize| AttributeGroup { default: vec![0.0; width], ..AttributeGroup::mixed("n") };
         assert_eq!(
             [group(1).channel(0), group(4).channel(3), group(5).channel(4)],
             ["n", "n.w", "n.4"].map(str::to_owned)
         );
+        let titled = AttributeGroup { titles: ["a/b".to_owned()].into(), ..group(1) };
+        assert_eq!([titled.title(0), titled.channel(0), group(5).title(4)], ["a/b", "n", "n.4"]);
     }
 }

@@ -46,6 +46,7 @@ mod dependence;
 mod edit;
 mod fields;
 mod find;
+mod given;
 mod groups;
 mod node;
 mod numbers;

@@ -51,5 +51,6 @@ pub mod traverse;
 pub mod tree;
 pub mod walk;
 pub mod warp;
+pub mod weights;
 pub mod word;
 pub mod written;

@@ -46,7 +46,7 @@ impl Owner {
     #[must_use]
     pub fn path(&self, tree: &CheckedTree) -> String {
         let mut path = String::new();
-        for &(node, child) in &self.above {
+        for &(node, child) in self.above.iter().filter(|(node, _)| !tree.is_given(*node)) {
             let _ = write!(path, "{}.{child}/", word(tree.node(node)));
         }
         let node = tree.node(self.node);
@@ -153,6 +153,16 @@ impl<'a> LeafWays<'a> {
         Self { tree, above }
     }
 
+    /// The leaves that a way leads to and that have a field, ascending.
+    pub(crate) fn leaves(&self) -> Vec<NodeId> {
+        let all = (0..self.tree.nodes().len() as u32).map(NodeId);
+        all.filter(|&id| self.reaches(id) && is_leaf(self.tree.node(id))).collect()
+    }
+
+    fn reaches(&self, id: NodeId) -> bool {
+        id == self.tree.root() || self.above[id.0 as usize].is_some()
+    }
+
     /// The way from the root to a node, as [`Owner::path`] has it, but that it does not tell particles apart;
     /// `None` if no way leads there. Of one that takes more than so many bytes, the end, behind `…/`.
     #[must_use]
@@ -160,6 +170,10 @@ impl<'a> LeafWays<'a> {
         let mut steps = vec![word(self.tree.nodes().get(leaf.0 as usize)?).to_owned()];
         let (mut length, mut at) = (steps[0].len(), leaf);
         while let Some((node, child)) = self.above[at.0 as usize] {
+            at = node;
+            if self.tree.is_given(node) {
+                continue;
+            }
             let step = format!("{}.{child}", word(self.tree.node(node)));
             length += step.len() + 1;
             if length > longest {
@@ -167,11 +181,23 @@ impl<'a> LeafWays<'a> {
                 break;
             }
             steps.push(step);
-            at = node;
         }
-        let is_reached = steps.len() > 1 || leaf == self.tree.root();
         steps.reverse();
-        is_reached.then(|| steps.join("/"))
+        self.reaches(leaf).then(|| steps.join("/"))
+    }
+}
+
+/// Whether a node has no children and a field that is not 0 everywhere.
+fn is_leaf(node: &CheckedNode) -> bool {
+    match &node.kind {
+        NodeKind::Primitive(_) | NodeKind::Particles(_) => true,
+        NodeKind::Expression(expression) => node.children.is_empty() && !expression.vanishes(),
+        NodeKind::Combine(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. }
+        | NodeKind::Constant { .. }
+        | NodeKind::Select(_) => false,
     }
 }
 

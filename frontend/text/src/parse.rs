@@ -332,6 +332,7 @@ impl<'a> Parser<'a> {
             default: default.unwrap_or_else(|| vec![if name == "color" { 1.0 } else { 0.0 }; width]),
             mixing: mixing.unwrap_or(Mixing::Blend),
             kind,
+            ..AttributeGroup::color()
         };
         self.declare(group, span);
     }

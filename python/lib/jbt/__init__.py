@@ -20,7 +20,7 @@ from ._contours import Contours, Loop
 from ._errors import Diagnostic, LimitError, OpenMeshWarning, SceneError, SceneWarning
 from ._evaluator import Answers, Comparison, Counters, Evaluator, compare_engines
 from ._grid import Grid
-from ._hits import Hits, Owners
+from ._hits import Hits, Owners, Weights
 from ._jbt import Falloff, Number, Pattern, Term
 from ._members import *  # noqa: F403
 from ._mesh import Creases, Mesh
@@ -71,6 +71,7 @@ __all__ = [
     "SceneError",
     "SceneWarning",
     "Term",
+    "Weights",
     "compare_engines",
     "expression",
     "falloff_of",

@@ -95,3 +95,30 @@ class Owners:
 
     def __repr__(self) -> str:
         return f"<jbt.Owners of {len(self)} points>"
+
+
+@dataclass(eq=False, repr=False)
+class Weights:
+    """How much each leaf, or what has a name, has to say at each point.
+
+    Attributes:
+        names: the way to each leaf from the root, as "union.0/point", or the names that were asked for.
+        values: (n, len(names)), from 0 to 1: the coefficients by which attributes mix.
+        default: (n,), the weight of nobody, which is that of an attribute's default: 1 where no leaf decides.
+    """
+
+    names: tuple[str, ...]
+    values: Floats
+    default: Floats
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self.names:
+            raise KeyError(f"{name}: there are {', '.join(self.names)}")
+        column: Floats = self.values[:, self.names.index(name)]
+        return column
+
+    def __len__(self) -> int:
+        return len(self.default)
+
+    def __repr__(self) -> str:
+        return f"<jbt.Weights of {', '.join(self.names)} at {len(self)} points>"

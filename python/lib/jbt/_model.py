@@ -18,7 +18,7 @@ from ._contours import Contours
 from ._errors import OpenMeshWarning, SceneWarning
 from ._evaluator import Evaluator
 from ._grid import Grid
-from ._hits import Hits, Owners
+from ._hits import Hits, Owners, Weights
 from ._members import ModelMembers
 from ._mesh import Mesh
 from ._progress import watcher
@@ -684,6 +684,39 @@ class Model(ModelMembers):
         given, _, _ = columns(points, y, z)
         rows = np.column_stack(given).astype(np.float64)
         return Owners(**self._native.owner(rows, threads))
+
+    def weights(
+        self,
+        points: Any,
+        y: Any = None,
+        z: Any = None,
+        *,
+        of: Sequence[str] | None = None,
+        threads: int | None = None,
+    ) -> Weights:
+        """How much each leaf has to say at each point: the coefficients by which attributes mix. With the
+        weight of nobody they add up to 1.
+
+        Args:
+            points: points as an evaluator takes them.
+            y: where `points` is the array of x.
+            z: likewise.
+            of: paths of names, as "body/arm.1", each for all leaves below it. As a rule each leaf by itself.
+            threads: how many work, from 1 on. As a rule as many as there are CPUs.
+
+        >>> import jbt
+        >>> model = jbt.point((0, 0, 0), radius=2) + jbt.point((1, 0, 0), radius=2)
+        >>> weights = model.weights([[0.5, 0, 0], [9, 0, 0]])
+        >>> weights.names, weights.values.tolist(), weights.default.tolist()
+        (('sum.0/point', 'sum.1/point'), [[0.5, 0.5], [0.0, 0.0]], [0.0, 1.0])
+        """
+        named = None if of is None else list(dict.fromkeys(of))
+        native = self._native.weights(named)
+        answers = Evaluator(native, (self, False, True, None))(points, y, z, threads=threads)
+        # The field comes first, and what nobody has last.
+        columns = answers.planes[1:-1]
+        names = [name.removeprefix("weights.") for name in answers.names[1:-1]]
+        return Weights(tuple(named or names), columns.T, answers.planes[-1])
 
 
 def _region(given: Region | None) -> list[list[float]] | None:

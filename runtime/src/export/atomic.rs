@@ -38,6 +38,9 @@ struct PendingFile {
     replace: bool,
 }
 
+/// A new file, and its temporary name if it has one.
+type BegunFile = (File, Option<TempPath>);
+
 /// What stands at a path, and so how it is written to.
 enum PathKind {
     /// A pipe or a device.
@@ -55,6 +58,20 @@ impl AtomicFile {
     /// Whatever the system refuses; a folder, a file that is read-only, a path whose folder is not there, and
     /// a new file, or one that is not to be replaced, in a folder that takes no new file.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
+        Self::begin(path, replace, begin)
+    }
+
+    /// The same with a temporary name from the beginning: then [`close`](Self::close) closes it. For whoever
+    /// writes more files at once than a process may have open.
+    ///
+    /// # Errors
+    ///
+    /// As [`create`](Self::create).
+    pub fn create_with_name(path: &Path, replace: bool) -> io::Result<Self> {
+        Self::begin(path, replace, begin_with_name)
+    }
+
+    fn begin(path: &Path, replace: bool, begin: fn(&Path) -> io::Result<BegunFile>) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {
                 let file = File::options().write(true).open(path)?;
@@ -109,17 +126,60 @@ impl AtomicFile {
         self.target.as_ref()?.temporary.as_deref()
     }
 
+    /// Ends the contents and brings them to the disk. Those with a temporary name are open no longer.
+    ///
+    /// # Errors
+    ///
+    /// Whatever the system refuses; then the file is as it was.
+    pub fn close(self) -> io::Result<WrittenFile> {
+        let Self { file, target, .. } = self;
+        if target.is_some() {
+            file.sync_all()?;
+        }
+        let is_named = target.as_ref().is_some_and(|pending| pending.temporary.is_some());
+        Ok(WrittenFile { file: (!is_named).then_some(file), target })
+    }
+
     /// Puts the contents in their place, once they are on the disk.
     ///
     /// # Errors
     ///
     /// Whatever the system refuses; then the file is as it was.
     pub fn finish(self) -> io::Result<()> {
+        self.close()?.finish()
+    }
+}
+
+/// The new contents of a file, all of them on the disk, that are not in its place yet: see [`AtomicFile`].
+#[derive(Debug)]
+pub struct WrittenFile {
+    /// The contents, where they have no name.
+    file: Option<File>,
+    target: Option<PendingFile>,
+}
+
+impl WrittenFile {
+    /// The place, if the contents are not there already.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        self.target.as_ref().map(|pending| &*pending.path)
+    }
+
+    /// Puts the contents in their place.
+    ///
+    /// # Errors
+    ///
+    /// Whatever the system refuses; then the file is as it was.
+    pub fn finish(self) -> io::Result<()> {
         let Some(PendingFile { temporary, path, replace }) = self.target else { return Ok(()) };
-        self.file.sync_all()?;
-        let Some(temporary) = temporary else { return put_nameless(&self.file, &path, replace) };
-        let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
-        put.map_err(|error| error.error)
+        match (temporary, self.file) {
+            (Some(temporary), _) => {
+                let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
+                put.map_err(|error| error.error)
+            }
+            (None, Some(file)) => put_nameless(&file, &path, replace),
+            (None, None) => Ok(()),
+        }
     }
 }
 
@@ -158,11 +218,16 @@ impl PathKind {
 
 /// A new file with the permissions that the process gives to any new file, and its temporary name if it needs
 /// one.
-fn begin(folder: &Path) -> io::Result<(File, Option<TempPath>)> {
+fn begin(folder: &Path) -> io::Result<BegunFile> {
     #[cfg(target_os = "linux")]
     if let Some(file) = nameless::create(folder) {
         return Ok((file, None));
     }
+    begin_with_name(folder)
+}
+
+/// The same, always with a temporary name.
+fn begin_with_name(folder: &Path) -> io::Result<BegunFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".jbt-");
     // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.

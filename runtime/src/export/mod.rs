@@ -29,7 +29,7 @@ mod three_mf;
 mod usda;
 mod zip;
 
-pub use atomic::AtomicFile;
+pub use atomic::{AtomicFile, WrittenFile};
 pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, LengthUnit, Up};
 pub use format::{ExportOptions, Format};
 pub use parts::constant_json;

@@ -107,6 +107,11 @@ impl Region {
     pub fn rows(&self) -> usize {
         self.selection.len()
     }
+
+    /// What it keeps, in bytes. Regions in which the same rows run may share them.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<Self>() + self.selection.bytes()
+    }
 }
 
 /// A model, compiled for questions about boxes: see the module.

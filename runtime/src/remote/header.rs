@@ -16,7 +16,7 @@ pub(super) fn write(tree: &CheckedTree, writer: &mut ByteWriter) {
     writer.u8(place(&ModelUp::ALL, up));
     writer.u8(place(&Handed::ALL, handed));
     writer.count(tree.attributes().len());
-    for AttributeGroup { name, default, mixing, kind } in tree.attributes() {
+    for AttributeGroup { name, default, mixing, kind, titles: _ } in tree.attributes() {
         writer.text(name);
         writer.u8(place(&Mixing::ALL, *mixing));
         writer.u8(place(&GroupKind::ALL, *kind));
@@ -39,7 +39,7 @@ pub(super) fn read(reader: &mut ByteReader<'_>) -> Result<CheckedTree, FormatErr
         let (mixing, kind) = (reader.one_of(&Mixing::ALL)?, reader.one_of(&GroupKind::ALL)?);
         let count = reader.count(8)?;
         let default = (0..count).map(|_| reader.f64()).collect::<Result<_, _>>()?;
-        attributes.push(AttributeGroup { name, default, mixing, kind });
+        attributes.push(AttributeGroup { name, default, mixing, kind, ..AttributeGroup::color() });
     }
     let anything = jbt_model::builder::point([0, 0, 0], 1);
     let model = Model {

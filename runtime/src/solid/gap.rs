@@ -9,14 +9,14 @@
 //! ```
 //!
 //! A box is cut once, however many pairs it is in. So solids of thousands of parts that are equally near to
-//! each other take that many cuts, and not that of their pairs. A pair is a few bytes. When the work is used
-//! up, the bracket is that of the pairs so far.
+//! each other take that many cuts, and not that of their pairs. A pair is a few bytes, a box that is not cut
+//! yet keeps the rows that run in it. When the budget is used up, the bracket is that of the pairs so far.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use jbt_ir::limits::{MAX_GAP_PAIRS, MAX_GAP_WORK};
+use jbt_ir::limits::{MAX_GAP_BYTES, MAX_GAP_PAIRS, MAX_GAP_WORK};
 use jbt_ir::watch;
 
 use super::halves::{halves, ranges};
@@ -46,6 +46,27 @@ pub struct Gap {
     pub points: [[f64; 3]; 2],
 }
 
+/// What the search for a distance may take.
+#[derive(Clone, Copy)]
+struct GapBudget {
+    /// Pairs of boxes.
+    pairs: u32,
+    /// Rows that run in boxes which are cut, those of both solids.
+    work: u64,
+    /// Bytes that the boxes of both keep.
+    bytes: usize,
+}
+
+impl GapBudget {
+    const WHOLE: Self = Self { pairs: MAX_GAP_PAIRS, work: MAX_GAP_WORK, bytes: MAX_GAP_BYTES };
+
+    /// Whether nothing may be cut any more.
+    fn is_spent(&self, trees: &[GapTree<'_>; 2]) -> bool {
+        let [a, b] = trees;
+        a.work + b.work >= self.work || a.bytes + b.bytes >= self.bytes
+    }
+}
+
 /// A box that may hold points of a solid.
 struct GapBox {
     bounds: Box3,
@@ -72,13 +93,20 @@ struct GapTree<'a> {
     boxes: Vec<GapBox>,
     /// What cuts have taken, in rows.
     work: u64,
+    /// What is kept, in bytes, as if no two boxes shared rows.
+    bytes: usize,
 }
 
 impl<'a> GapTree<'a> {
     fn new(solid: &'a Solid, bounds: Box3) -> Result<Self, EvalError> {
-        let parts = GapParts::Uncut(solid.pruner.region(bounds)?);
-        let whole = GapBox { bounds, highest: f32::INFINITY, inside: None, parts };
-        Ok(Self { solid, boxes: vec![whole], work: 0 })
+        let mut tree = Self { solid, boxes: Vec::new(), work: 0, bytes: 0 };
+        tree.push(bounds, f32::INFINITY, None, solid.pruner.region(bounds)?);
+        Ok(tree)
+    }
+
+    fn push(&mut self, bounds: Box3, highest: f32, inside: Option<[f32; 3]>, region: Region) {
+        self.bytes += size_of::<GapBox>() + region.bytes();
+        self.boxes.push(GapBox { bounds, highest, inside, parts: GapParts::Uncut(region) });
     }
 
     /// The parts of a box that may hold points of the solid; nothing if it cannot be cut.
@@ -92,6 +120,7 @@ impl<'a> GapTree<'a> {
             }
             GapParts::Smallest => return Ok(None),
         };
+        self.bytes -= region.bytes();
         let bounds = self.boxes[place].bounds;
         let parts = cut(&bounds, halves(&bounds));
         if parts == [bounds] {
@@ -125,17 +154,17 @@ impl<'a> GapTree<'a> {
         let sides = batch.sides(solid, region)?;
         for (((bounds, highest), region), is_inside) in left.into_iter().zip(regions).zip(sides) {
             let inside = if is_inside { Some(center(&bounds)) } else { near };
-            self.boxes.push(GapBox { bounds, highest, inside, parts: GapParts::Uncut(region) });
+            self.push(bounds, highest, inside, region);
         }
         Ok(())
     }
 
     /// Looks for a point of the solid, where its field may be highest; the whole box knows it then. Says
-    /// whether there may be one.
-    fn find(&mut self) -> Result<bool, EvalError> {
+    /// whether there may be one. It takes half of what both may keep.
+    fn find(&mut self, budget: GapBudget) -> Result<bool, EvalError> {
         let mut open = BinaryHeap::from([HighBox { highest: f32::INFINITY, number: 0 }]);
         for _ in 0..MAX_FIRST_CUTS {
-            if self.work >= MAX_GAP_WORK {
+            if self.work >= budget.work || self.bytes >= budget.bytes / 2 {
                 break;
             }
             let Some(HighBox { number, .. }) = open.pop() else { return Ok(false) };
@@ -206,14 +235,23 @@ type Witness = (f64, [[f32; 3]; 2]);
 /// The distance between two solids in boxes around them; `None` if no point of one of them is found. Points
 /// count from the origin of the model.
 pub(super) fn gap(solids: [&Solid; 2], around: [Box3; 2], tolerance: f32) -> Result<Option<Gap>, EvalError> {
+    gap_within(GapBudget::WHOLE, solids, around, tolerance)
+}
+
+fn gap_within(
+    budget: GapBudget,
+    solids: [&Solid; 2],
+    around: [Box3; 2],
+    tolerance: f32,
+) -> Result<Option<Gap>, EvalError> {
     let mut trees = [GapTree::new(solids[0], around[0])?, GapTree::new(solids[1], around[1])?];
     for tree in &mut trees {
-        if !tree.find()? {
+        if !tree.find(budget)? {
             return Ok(None);
         }
     }
     let mut best: Option<Witness> = None;
-    let low = search(&mut trees, f64::from(tolerance), &mut best)?;
+    let low = search(budget, &mut trees, f64::from(tolerance), &mut best)?;
     Ok(best.map(|(high, points)| Gap {
         low: low.min(high),
         high,
@@ -223,6 +261,7 @@ pub(super) fn gap(solids: [&Solid; 2], around: [Box3; 2], tolerance: f32) -> Res
 
 /// A bound of the distance from below; `best` are the nearest points that were met.
 fn search(
+    budget: GapBudget,
     trees: &mut [GapTree<'_>; 2],
     tolerance: f64,
     best: &mut Option<Witness>,
@@ -248,12 +287,11 @@ fn search(
     let (mut high, mut pairs) = meet(trees, [0, 0], &mut open);
     let mut turns = 0;
     while let Some(GapPair { low, boxes, .. }) = open.pop() {
-        let work: u64 = trees.iter().map(|tree| tree.work).sum();
         turns += 1;
         if turns % LOOK == 0 {
             watch::go_on()?;
         }
-        if high - low <= tolerance || pairs >= MAX_GAP_PAIRS || work >= MAX_GAP_WORK {
+        if high - low <= tolerance || pairs >= budget.pairs || budget.is_spent(trees) {
             return Ok(low);
         }
         let side = |side: usize| trees[side].boxes[boxes[side] as usize].bounds.longest_side();
@@ -281,4 +319,62 @@ fn least(a: &Box3, b: &Box3) -> f64 {
         gap(a.high[axis], b.low[axis]).max(gap(b.high[axis], a.low[axis])).max(0.0)
     };
     (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Compiler;
+
+    /// Whatever is used up first, the bracket holds; with less of it, it is no narrower.
+    #[test]
+    fn budgets_that_end_leave_brackets_that_hold() {
+        let wall = |x: f64| {
+            let text = format!("jbt 1 box {{ center ({x} 0 0) half (1 4 4) surface_radius 0.1 }}");
+            let tree = jbt_text::model(&text).unwrap().check().unwrap();
+            Solid::new(&Compiler::new(), &tree).unwrap()
+        };
+        let solids = [wall(0.0), wall(4.0)];
+        let around = [0.0, 4.0].map(|x| Box3 { low: [x - 2.0, -5.0, -5.0], high: [x + 2.0, 5.0, 5.0] });
+        let expected = 4.0 - 2.0 - 0.2;
+        let width = |budget: GapBudget| {
+            let gap = gap_within(budget, [&solids[0], &solids[1]], around, 1e-3).unwrap().unwrap();
+            assert!(gap.low <= expected + 1e-6 && expected <= gap.high + 1e-6, "{gap:?}");
+            gap.high - gap.low
+        };
+        let whole = width(GapBudget { pairs: 1 << 14, ..GapBudget::WHOLE });
+        let by_pairs = [1, 6, 12].map(|bits| width(GapBudget { pairs: 1 << bits, ..GapBudget::WHOLE }));
+        let by_bytes = [13, 15, 18]
+            .map(|bits| width(GapBudget { pairs: 1 << 14, bytes: 1 << bits, ..GapBudget::WHOLE }));
+        let by_work =
+            [11, 14, 17].map(|bits| width(GapBudget { pairs: 1 << 14, work: 1 << bits, ..GapBudget::WHOLE }));
+        for widths in [by_pairs, by_bytes, by_work] {
+            assert!(
+                widths[0] >= widths[1] && widths[1] >= widths[2] && widths[2] >= whole,
+                "{widths:?} {whole}"
+            );
+            assert!(widths[0] > whole, "{widths:?} {whole}");
+        }
+    }
+
+    /// What a tree says that it keeps is what its boxes keep.
+    #[test]
+    fn bytes_are_those_of_uncut_boxes() {
+        let text = "jbt 1 union { point { radius 1 } point { at (3 0 0) radius 1 } }";
+        let tree = jbt_text::model(text).unwrap().check().unwrap();
+        let solid = Solid::new(&Compiler::new(), &tree).unwrap();
+        let mut tree = GapTree::new(&solid, Box3 { low: [-2.0; 3], high: [5.0; 3] }).unwrap();
+        for number in 0..40 {
+            if (number as usize) < tree.boxes.len() {
+                tree.parts(number).unwrap();
+            }
+            let kept = |one: &GapBox| match &one.parts {
+                GapParts::Uncut(region) => region.bytes(),
+                GapParts::Cut(_) | GapParts::Smallest => 0,
+            };
+            let kept: usize = tree.boxes.iter().map(kept).sum();
+            assert_eq!(tree.bytes, kept + tree.boxes.len() * size_of::<GapBox>());
+        }
+        assert!(tree.boxes.len() > 20, "{}", tree.boxes.len());
+    }
 }

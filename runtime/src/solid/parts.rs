@@ -238,9 +238,9 @@ impl PartSolids {
     /// common. `None` if one of them is empty, or so thin that no point of it is found.
     ///
     /// The bracket is as narrow as the tolerance, unless
-    /// [`MAX_GAP_PAIRS`](jbt_ir::limits::MAX_GAP_PAIRS) or [`MAX_GAP_WORK`](jbt_ir::limits::MAX_GAP_WORK) is
-    /// used up: parallel walls have so many nearest points that it can be wider. It holds all the same,
-    /// however many leaves the parts have.
+    /// [`MAX_GAP_PAIRS`](jbt_ir::limits::MAX_GAP_PAIRS), [`MAX_GAP_WORK`](jbt_ir::limits::MAX_GAP_WORK) or
+    /// [`MAX_GAP_BYTES`](jbt_ir::limits::MAX_GAP_BYTES) is used up: parallel walls have so many nearest
+    /// points that it can be wider. It holds all the same, however many leaves the parts have.
     ///
     /// # Errors
     /// See [`PartError`].

@@ -47,6 +47,7 @@ const MODEL: &[&[&str]] = &[
     &["check"],
     &["descent"],
     &["owner", "tour", "walk"],
+    &["weights"],
     // Ways to write it.
     &["scopes", "term"],
     &["builder"],

@@ -17,7 +17,7 @@ mod members;
 mod numbers;
 
 use fastrand::Rng;
-use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::attribute::{AttributeGroup, GroupKind, Mixing};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, param};
 use jbt_model::tree::Tree;
@@ -107,17 +107,19 @@ impl Random {
         Model { iso: self.between(0.3, 0.6).into(), attributes, ..Model::new(root) }
     }
 
-    /// The colours and up to two other groups; hostile ones are up to 64 wide.
+    /// The colours and up to two other groups, of directions some; hostile ones are up to 64 wide.
     fn groups(&mut self) -> Vec<AttributeGroup> {
         let mut groups = vec![AttributeGroup::color()];
         for index in 0..self.shape.usize(0..3) {
             let widest = if self.is_hostile() { 64 } else { 7 };
-            let width = [1, 2, 2, 3, 4, widest][self.shape.usize(0..6)];
+            let pick = self.shape.usize(0..6);
+            let width = [1, 2, 2, 3, 4, widest][pick];
             groups.push(AttributeGroup {
                 // Some names are words of the text format too.
                 name: ["rough", "scale"][index].into(),
                 default: (0..width).map(|_| self.between(-1.0, 1.0)).collect(),
                 mixing: if self.shape.bool() { Mixing::Blend } else { Mixing::Dominant },
+                kind: if pick == 3 { GroupKind::Direction } else { GroupKind::Numbers },
                 ..AttributeGroup::color()
             });
         }

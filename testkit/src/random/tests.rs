@@ -37,6 +37,10 @@ fn every_member_comes_up() {
         for word in skeletons.chain(falloffs).chain(warps).chain(maps).chain(textures) {
             assert!(words.contains(word), "{word} is in no model of {numbers:?} numbers");
         }
+        for mixing in ["blend", "dominant"] {
+            let has = |line: &str| line.contains(" direction ") && line.ends_with(mixing);
+            assert!(text.lines().any(has), "no model of {numbers:?} numbers has directions that {mixing}");
+        }
     }
 }
 

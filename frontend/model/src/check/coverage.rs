@@ -10,11 +10,8 @@
 
 use std::sync::Arc;
 
-use jbt_ir::limits;
-
-use super::arena::{CheckedNode, Children, NodeId};
 use super::tree::CheckedTree;
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence};
+use crate::attribute::AttributeGroup;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::kind::NodeKind;
 use crate::particles::{NumberArray, ParticleValues};
@@ -46,49 +43,18 @@ impl CheckedTree {
     /// groups as there may be.
     pub fn with_coverage(&self, group: &str) -> Result<Self, Diagnostics> {
         let name: Arc<str> = format!("{group}{DEFINED}").into();
-        let has = |name: &str| self.attributes.iter().any(|other| &*other.name == name);
         let refused = |message: String| Err(vec![Diagnostic::error(None, message)].into());
-        if !has(group) {
+        if !self.has_group(group) {
             return refused(format!("no attribute is named `{}`", clip(group)));
         }
-        if has(&name) {
+        if self.has_group(&name) {
             return refused(format!("`{}` is an answer already", clip(&name)));
         }
-        if self.attributes.len() == limits::MAX_ATTRIBUTES {
-            let error = Diagnostic::limit(None, "the model has as many attributes as it may have");
-            return Err(vec![error].into());
+        let coverage = AttributeGroup { default: vec![0.0], ..AttributeGroup::mixed(&name) };
+        let mut tree = self.with_group(coverage, |_, kind| gives(kind, group).then(|| vec![1.0]))?;
+        for node in Arc::make_mut(&mut tree.nodes) {
+            mark(&mut node.kind, group, &name);
         }
-        let mut nodes: Vec<CheckedNode> = Vec::with_capacity(self.nodes.len());
-        // Of each node its copy, and what stands for it above.
-        let mut copies: Vec<[NodeId; 2]> = Vec::with_capacity(self.nodes.len());
-        for node in self.nodes.iter() {
-            let children: Children = node.children.iter().map(|child| copies[child.0 as usize][1]).collect();
-            let kind = marked(&node.kind, group, &name);
-            let copy = NodeId(nodes.len() as u32);
-            nodes.push(CheckedNode { kind, children, ..node.clone() });
-            let mut above = copy;
-            if gives(&node.kind, group) {
-                let value = AttributeValue::Numbers(vec![1.0]);
-                let kind =
-                    NodeKind::Attribute { name: Arc::clone(&name), value, precedence: Precedence::Nearest };
-                above = NodeId(nodes.len() as u32);
-                nodes.push(CheckedNode {
-                    kind,
-                    children: Children::from_slice(&[copy]),
-                    span: node.span,
-                    label: None,
-                });
-            }
-            copies.push([copy, above]);
-        }
-        let dependence = Arc::new(self.dependence.of(|id| Some(copies[id.0 as usize][0])));
-        let mut tree = Self { dependence, origin: self.origin, ..self.of_nodes(nodes) };
-        tree.attributes.push(AttributeGroup {
-            name,
-            default: vec![0.0],
-            mixing: Mixing::Blend,
-            ..AttributeGroup::color()
-        });
         Ok(tree)
     }
 }
@@ -98,17 +64,12 @@ fn gives(kind: &NodeKind, group: &str) -> bool {
     matches!(kind, NodeKind::Attribute { name, .. } if &**name == group)
 }
 
-/// The same kind; particles with values of the group have values of its coverage as well.
-fn marked(kind: &NodeKind, group: &str, name: &Arc<str>) -> NodeKind {
-    match kind {
-        NodeKind::Particles(particles) if particles.values_of(group).is_some() => {
-            let numbers = NumberArray::from([1.0]);
-            NodeKind::Particles(particles.with_values(ParticleValues {
-                name: Arc::clone(name),
-                width: 1,
-                numbers,
-            }))
-        }
-        kind => kind.clone(),
+/// Gives particles with values of the group values of its coverage as well.
+fn mark(kind: &mut NodeKind, group: &str, name: &Arc<str>) {
+    if let NodeKind::Particles(particles) = kind
+        && particles.values_of(group).is_some()
+    {
+        let numbers = NumberArray::from([1.0]);
+        *particles = particles.with_values(ParticleValues { name: Arc::clone(name), width: 1, numbers });
     }
 }

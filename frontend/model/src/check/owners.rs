@@ -7,13 +7,10 @@
 //! The owner of a point is the leaf whose value a `dominant` attribute takes, so a group with one value for
 //! each leaf is all it needs: programs compute it beside the field, by the rules of every operator.
 
-use std::sync::Arc;
-
-use super::arena::{CheckedNode, Children, NodeId};
+use super::arena::NodeId;
 use super::tree::CheckedTree;
-use crate::attribute::{AttributeGroup, AttributeValue, Mixing, Precedence};
+use crate::attribute::{AttributeGroup, Mixing};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::kind::NodeKind;
 
 /// The name of the group that says which leaf decides.
 pub const OWNER: &str = "owner";
@@ -58,44 +55,13 @@ impl CheckedTree {
         width: usize,
         value: impl Fn(NodeId) -> Vec<f64>,
     ) -> Result<Self, Diagnostics> {
-        let refused = |error: Diagnostic| Err(vec![error].into());
-        if self.attributes.iter().any(|group| &*group.name == OWNER) {
+        if self.has_group(OWNER) {
             let error = format!("the model has an attribute `{OWNER}` of its own");
-            return refused(Diagnostic::error(None, error));
+            return Err(vec![Diagnostic::error(None, error)].into());
         }
-        if self.attributes.len() == jbt_ir::limits::MAX_ATTRIBUTES {
-            return refused(Diagnostic::limit(None, "the model has as many attributes as it may have"));
-        }
-        let name: Arc<str> = OWNER.into();
-        let mut nodes: Vec<CheckedNode> = Vec::with_capacity(2 * self.nodes.len());
-        let mut names: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
-        for (index, node) in self.nodes.iter().enumerate() {
-            let children: Children = node.children.iter().map(|child| names[child.0 as usize]).collect();
-            nodes.push(CheckedNode { children, ..node.clone() });
-            if node.children.is_empty() {
-                let leaf = NodeId(nodes.len() as u32 - 1);
-                let value = AttributeValue::Numbers(value(NodeId(index as u32)));
-                let kind =
-                    NodeKind::Attribute { name: Arc::clone(&name), value, precedence: Precedence::Nearest };
-                let children = Children::from_slice(&[leaf]);
-                nodes.push(CheckedNode { kind, children, span: node.span, label: None });
-            }
-            names.push(NodeId(nodes.len() as u32 - 1));
-        }
-        let place = |id: &NodeId| {
-            // What depends on parameters is the node, and not what says whose it is.
-            let outer = names[id.0 as usize];
-            Some(if self.node(*id).children.is_empty() { NodeId(outer.0 - 1) } else { outer })
-        };
-        let dependence = Arc::new(self.dependence.of(place));
-        let mut tree = Self { dependence, origin: self.origin, ..self.of_nodes(nodes) };
-        tree.attributes.push(AttributeGroup {
-            name,
-            default: vec![default; width],
-            mixing: Mixing::Dominant,
-            ..AttributeGroup::color()
-        });
-        Ok(tree)
+        let (default, mixing) = (vec![default; width], Mixing::Dominant);
+        let owners = AttributeGroup { default, mixing, ..AttributeGroup::mixed(OWNER) };
+        self.with_group(owners, |id, _| self.node(id).children.is_empty().then(|| value(id)))
     }
 }
 

@@ -26,7 +26,12 @@ impl CheckedTree {
         let root = self.node(self.root());
         let is_union = root.kind == NodeKind::Combine(Combinator::from(Union {}));
         let part = |&node: &NodeId| {
-            let label = self.node(node).label.as_ref().filter(|label| label.part)?;
+            // A group that nobody declared does not hide the part below it.
+            let mut written = node;
+            while self.is_given(written) {
+                written = self.node(written).children[0];
+            }
+            let label = self.node(written).label.as_ref().filter(|label| label.part)?;
             Some(PartRoot { name: label.name.as_deref()?, node })
         };
         let parts: Option<Vec<PartRoot<'_>>> = root.children.iter().map(part).collect();
