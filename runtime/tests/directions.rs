@@ -119,6 +119,24 @@ fn warps_turn_by_their_derivative() {
     assert_directions(&several, 1e-4, |_| None);
 }
 
+/// Leaves that are given one direction inside of a warp, turned or not, share what is computed of it.
+#[test]
+fn leaves_of_a_warp_share_a_direction() {
+    let two = "sum { point { radius 2 } segment { from (0 0 0) to (0 0.2 0.1) radius 2 } }";
+    let around = |grain: &str| format!("twist axis z rate 2 {{ {grain} }}");
+    let twisted = |[a, b, c]: [f64; 3]| {
+        move |[x, y, z]: [f64; 3]| {
+            let (sin, cos) = (2.0 * z).sin_cos();
+            // The twist turns by its rate times z, so what has a part along z leans on the way.
+            let (a, b) = (cos * a - sin * b, sin * a + cos * b);
+            Some([a - 2.0 * c * y, b + 2.0 * c * x, c])
+        }
+    };
+    assert_directions(&around(&format!("grain (1 2 3) {{ {two} }}")), 1e-4, twisted([1.0, 2.0, 3.0]));
+    let turned = format!("rotate axis z degrees 90 {{ grain (1 2 3) {{ {two} }} }}");
+    assert_directions(&around(&turned), 1e-4, twisted([-2.0, 1.0, 3.0]));
+}
+
 #[test]
 fn particles_have_directions_of_their_own() {
     let cloud = "particles { at ((0 0 0) (0.3 0 0)) radius (1.5 1) grain ((0 0 1) (0 0 1)) }";

@@ -10,6 +10,7 @@ use glam::{DMat3, DVec3};
 
 use super::computed::{Computed, attribute as given};
 use super::instance::Scene;
+use super::names::Hoist;
 use super::position::MapKind;
 use super::recipe::{ColumnNumbers, Member};
 use jbt_model::attribute::{AttributeGroup, AttributeValue, Textured};
@@ -67,11 +68,20 @@ pub(super) fn default(group: &AttributeGroup, index: usize) -> Columns<impl Name
     channels(group, move |scene, _| &scene.tree.attributes()[index].default)
 }
 
-/// What a leaf has of the attribute group with this index, if that is not computed.
+/// What a leaf has of the attribute group with this index, if that is not computed at the point.
 pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Names> {
     let names = (0..group.width()).map(|index| group.channel(index));
     columns(names, move |scene, leaf, row| {
         let group = &scene.tree.attributes()[index];
+        // Directions that several leaves share stand at the start of their space.
+        if let Member::Hoisted(Hoist::Computed(id)) = leaf {
+            let Computed { node, map, .. } = scene.computed(id);
+            let AttributeValue::Numbers(numbers) = given(scene.tree, *node) else {
+                unreachable!("the kind is that of the node")
+            };
+            push_turned(group, &map.matrix3, numbers, row);
+            return;
+        }
         let (bindings, _) = leaf.attributes(scene);
         // What particles are bound to besides their own values overrides these.
         if bindings[index].is_none()

@@ -21,21 +21,47 @@ const HALVINGS: usize = 19;
 /// on top.
 const BENT: f64 = 1.0 / 128.0;
 
-/// The unit normal away from the inside of the wall at a crossed edge of a sheet; `None` if it is not seen.
-pub(super) fn normal<F: Field>(
+/// The unit normals away from the inside of walls at crossed edges of sheets; `None` where none is seen. All
+/// edges are asked at once, so that the field gets many points at a time.
+pub(super) fn normals<F: Field>(
     field: &F,
     region: &F::Region,
     iso: f32,
-    (sheet, edge): (&Sheet, &CrossedEdge),
+    edges: &[(&Sheet, &CrossedEdge)],
     points: &mut BracketPoints,
-) -> Result<Option<[f64; 3]>, F::Error> {
+) -> Result<Vec<Option<[f64; 3]>>, F::Error> {
+    let mut found = vec![None; edges.len()];
+    let mut left: Vec<usize> = (0..edges.len()).collect();
     for lines in LINES {
-        let Some(mut leaning) = Leaning::new(sheet, edge, lines) else { return Ok(None) };
-        if let Some(normal) = leaning.normal(field, region, iso, points)? {
-            return Ok(Some(normal));
+        let begun = left.iter().filter_map(|&n| Some((n, Leaning::new(edges[n].0, edges[n].1, lines)?)));
+        let mut leanings: Vec<(usize, Leaning)> = begun.collect();
+        if leanings.is_empty() {
+            break;
+        }
+        let ends = leanings.iter().flat_map(|(_, one)| one.brackets.iter().flat_map(|bracket| bracket.ends));
+        let values = points.ask(field, region, ends)?;
+        let brackets = leanings.iter_mut().flat_map(|(_, one)| &mut one.brackets);
+        brackets.zip(values.as_chunks().0).for_each(|(bracket, values)| bracket.values = *values);
+        left.clear();
+        let is_crossed = |(n, one): &(usize, Leaning)| {
+            let is_crossed = one.is_crossed(iso);
+            if !is_crossed {
+                left.push(*n);
+            }
+            is_crossed
+        };
+        leanings.retain(is_crossed);
+        let mut brackets: Vec<&mut Bracket> =
+            leanings.iter_mut().flat_map(|(_, one)| &mut one.brackets).collect();
+        points.halve(field, region, iso, &mut brackets, HALVINGS)?;
+        for (n, one) in leanings {
+            found[n] = one.normal();
+            if found[n].is_none() {
+                left.push(n);
+            }
         }
     }
-    Ok(None)
+    Ok(found)
 }
 
 /// The edge and four lines beside it: two along each other axis, the nearer one first.
@@ -71,24 +97,14 @@ impl Leaning {
         Some(Self { axis, outward, brackets, ways })
     }
 
-    fn normal<F: Field>(
-        &mut self,
-        field: &F,
-        region: &F::Region,
-        iso: f32,
-        points: &mut BracketPoints,
-    ) -> Result<Option<[f64; 3]>, F::Error> {
-        let ends = self.brackets.iter().flat_map(|bracket| bracket.ends);
-        let values: Vec<f32> = points.ask(field, region, ends)?.to_vec();
-        for (bracket, values) in self.brackets.iter_mut().zip(values.as_chunks().0) {
-            bracket.values = *values;
-        }
+    /// Whether all lines are crossed where they are looked at, and none is the edge itself.
+    fn is_crossed(&self, iso: f32) -> bool {
         let is_across = |bracket: &Bracket| bracket.values.map(|value| value >= iso) == [false, true];
-        if !self.brackets.iter().all(is_across) || self.ways.iter().any(|(_, way)| *way == 0.0) {
-            return Ok(None);
-        }
-        let mut brackets: Vec<&mut Bracket> = self.brackets.iter_mut().collect();
-        points.halve(field, region, iso, &mut brackets, HALVINGS)?;
+        self.brackets.iter().all(is_across) && self.ways.iter().all(|(_, way)| *way != 0.0)
+    }
+
+    /// The normal, if the halved lines are crossed along a plane.
+    fn normal(&self) -> Option<[f64; 3]> {
         let heights = self.brackets.each_ref().map(|bracket| f64::from(bracket.middle()[self.axis]));
         let [outside, inside] = self.brackets[0].ends;
         let rounding = f64::from(four_steps(outside[self.axis], inside[self.axis]));
@@ -99,11 +115,11 @@ impl Leaning {
             let [(_, near_way), (other, far_way)] = [self.ways[near], self.ways[near + 1]];
             let bend = far - rise * far_way / near_way;
             if bend.abs() > BENT * far_way.hypot(far) + rounding {
-                return Ok(None);
+                return None;
             }
             normal[other] = -far / far_way;
         }
         let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt() * f64::from(self.outward);
-        Ok(Some(normal.map(|c| c / length)))
+        Some(normal.map(|c| c / length))
     }
 }

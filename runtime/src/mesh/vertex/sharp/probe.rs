@@ -1,7 +1,7 @@
 //! Crossings with their normals and signatures.
 
 use super::super::super::field::Field;
-use super::super::bracket::{BracketPoints, CrossedEdges};
+use super::super::bracket::{BracketPoints, CrossedEdge, CrossedEdges};
 use super::super::sheet::Sheet;
 use super::crossing::{Crossing, SHARP, dot};
 use super::leaning;
@@ -141,15 +141,17 @@ pub(super) fn look<F: Field>(
     let ends: Vec<[f32; 3]> = edges().flat_map(|edge| [edge.outside(), edge.inside()]).collect();
     let ends_found = decided(field, region, &ends)?;
     let mut both = ends.as_chunks::<2>().0.iter().zip(ends_found.as_chunks::<2>().0);
-    let mut points = BracketPoints::default();
-    let mut found = Vec::new();
+    let jumps = sheets.iter().flat_map(|sheet| sheet.crossed(crossed).map(move |edge| (*sheet, edge)));
+    let jumps: Vec<(&Sheet, &CrossedEdge)> = jumps.filter(|(_, edge)| edge.is_jump()).collect();
+    let walls = leaning::normals(field, region, iso, &jumps, &mut BracketPoints::default())?;
+    let (mut walls, mut found) = (walls.into_iter(), Vec::new());
     for sheet in sheets {
         let (mut crossings, mut unseen) = (Vec::new(), Vec::new());
         for (edge, (ends, at)) in sheet.crossed(crossed).zip(both.by_ref()) {
             let place = edge.crossing();
             let end = if edge.is_jump() { 1 } else { deciding_end(ends, at) };
             let (signature, normal) = if edge.is_jump() {
-                (None, leaning::normal(field, region, iso, (sheet, edge), &mut points)?)
+                (None, walls.next().flatten())
             } else {
                 (Some(at[end].signature), at[end].normal())
             };
