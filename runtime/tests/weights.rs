@@ -186,9 +186,7 @@ fn weights_mix_colours() {
             nobody += usize::from(weights[count - 1] == 1.0);
         }
         assert!(nobody < points.len(), "{text}: nobody is heard");
-        assert!(
-            shared > 20 || !["sum", "ricci 3", "smooth_union"].contains(&text.split(" {").next().unwrap())
-        );
+        assert!(shared > 20 || !["sum", "blend ricci 3"].contains(&text.split(" {").next().unwrap()));
     }
 }
 
