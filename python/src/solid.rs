@@ -110,10 +110,14 @@ impl PyModel {
         let of_leaves = vec![WeightOf::Leaves];
         let asked = paths.as_ref().map(|paths| paths.iter().map(|path| WeightOf::Named(path)).collect());
         let asked: Vec<WeightOf<'_>> = asked.unwrap_or(of_leaves);
-        let mut tree = self.checked(py)?.of_attributes(&[""; 0]).or_raise(py)?;
+        let mut tree = self.checked(py)?;
+        let declared = tree.attributes().len();
         for of in asked.into_iter().chain([WeightOf::Default]) {
             tree = tree.with_weights(of).or_raise(py)?;
         }
+        // Others go last: ways to leaves have the nodes that give them.
+        let added: Vec<_> = tree.attributes()[declared..].iter().map(|group| group.name.clone()).collect();
+        let tree = tree.of_attributes(&added).or_raise(py)?;
         let compiled = compiler(None).compile(&tree);
         let made = CallEffort::quiet(py).run(move |_| compiled.evaluator(Query::ATTRIBUTES))?;
         Ok(PyEvaluator::new(made, tree))
