@@ -10,7 +10,7 @@ use jbt::tree::{DEFAULT_WEIGHT, WEIGHTS, WeightOf};
 use jbt::walk::walk;
 use jbt::{CheckedTree, Compiler, Engine, Fineness, Points, Polygonize, Query, Samples};
 use jbt_testkit::random::Random;
-use jbt_testkit::scene::tree;
+use jbt_testkit::scene::{OPERATORS, tree};
 
 /// The tree with the weights of its leaves, and that of nobody behind them.
 fn weighted(tree: &CheckedTree) -> CheckedTree {
@@ -136,26 +136,8 @@ fn weights_mix_colours() {
         leaf(COLORS[1], "translate (0.6 0 0) { segment { from (0 0 0) to (0.5 0 0) radius 1.1 } }"),
         leaf(COLORS[2], "box { center (0 0.7 0) half (0.7 0.1 0.2) radius 0.8 }"),
     ];
-    let operators = [
-        "sum",
-        "product",
-        "union",
-        "intersection",
-        "difference",
-        "symmetric_difference",
-        "blend ricci 3",
-        "blend ricci -2",
-        "smooth_union width 0.3",
-        "smooth_intersection width 0.3",
-        "smooth_difference width 0.3",
-        "rfunction union",
-        "rfunction intersection alpha 0.5",
-        "rfunction difference",
-        "expression { max(field(0) * 0.7, field(1)) + field(2) }",
-    ];
-    let mut texts: Vec<String> = operators.iter().map(|one| format!("{one} {{ {a}{b}{c} }}")).collect();
-    texts.pop();
-    for (outer, inner) in operators[..14].iter().zip(operators[1..14].iter().chain(&operators)) {
+    let mut texts: Vec<String> = OPERATORS.iter().map(|one| format!("{one} {{ {a}{b}{c} }}")).collect();
+    for (outer, inner) in OPERATORS.iter().zip(OPERATORS.iter().cycle().skip(1)) {
         texts.push(format!("{outer} {{ twist axis z rate 0.4 {{ {inner} {{ {a}{b} }} }} {c} }}"));
     }
     texts.push(format!("sum {{ complement {{ {a} }} {b}{c} }}"));

@@ -23,6 +23,24 @@ pub fn model(text: &str) -> Model {
     parse(text.as_bytes(), &options()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
 }
 
+/// Every operator of several children, as text before the brace; of some the numbers that make a difference.
+pub const OPERATORS: [&str; 14] = [
+    "sum",
+    "product",
+    "union",
+    "intersection",
+    "difference",
+    "symmetric_difference",
+    "blend ricci 3",
+    "blend ricci -2",
+    "smooth_union width 0.3",
+    "smooth_intersection width 0.3",
+    "smooth_difference width 0.3",
+    "rfunction union",
+    "rfunction intersection alpha 0.5",
+    "rfunction difference",
+];
+
 /// Reads files below the folder of the examples.
 struct ExampleFiles;
 

@@ -5,7 +5,7 @@ use jbt_model::owner::owner;
 use jbt_model::query::Query;
 use jbt_model::walk::walk;
 use jbt_testkit::random::Random;
-use jbt_testkit::scene::{compiled, examples, run, tree};
+use jbt_testkit::scene::{OPERATORS, compiled, examples, run, tree};
 
 /// The owner of a point by its walk: the number of the leaf, or -1.
 fn walked(tree: &CheckedTree, p: [f64; 3]) -> f64 {
@@ -15,23 +15,7 @@ fn walked(tree: &CheckedTree, p: [f64; 3]) -> f64 {
 #[test]
 fn every_operator_has_owners() {
     let leaves = "point { radius 2 } color (1 0 0) { translate (1 0 0) { segment { from (0 0 0) to (1 0 0) radius 1.5 } } } box { center (0 1 0) half (1 0.2 0.3) radius 1 }";
-    for operator in [
-        "sum",
-        "product",
-        "union",
-        "intersection",
-        "difference",
-        "symmetric_difference",
-        "blend ricci 3",
-        "blend ricci -2",
-        "smooth_union width 0.3",
-        "smooth_intersection 0.3",
-        "smooth_difference 0.3",
-        "rfunction union",
-        "rfunction intersection alpha 0.5",
-        "rfunction difference",
-        "select 1",
-    ] {
+    for operator in OPERATORS.into_iter().chain(["select 1"]) {
         let tree = tree(&format!("jbt 1 {operator} {{ {leaves} }}"));
         let owners = tree.with_owners().unwrap();
         let program = compiled(&owners, Query::ATTRIBUTES);

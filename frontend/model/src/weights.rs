@@ -130,22 +130,11 @@ impl CheckedTree {
 
     /// Leaves by all paths from the root, and particles.
     fn leaf_rows(&self) -> u64 {
-        let rows = |(node, &uses): (&CheckedNode, &u64)| match &node.kind {
-            NodeKind::Particles(particles) => uses.saturating_mul(particles.len() as u64),
-            NodeKind::Primitive(_)
-            | NodeKind::Combine(_)
-            | NodeKind::Expression(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. }
-            | NodeKind::Constant { .. } => {
-                if node.children.is_empty() {
-                    uses
-                } else {
-                    0
-                }
+        let rows = |(node, &uses): (&CheckedNode, &u64)| {
+            if let NodeKind::Particles(particles) = &node.kind {
+                return uses.saturating_mul(particles.len() as u64);
             }
+            if node.children.is_empty() { uses } else { 0 }
         };
         self.nodes().iter().zip(self.uses()).map(rows).fold(0, u64::saturating_add)
     }

@@ -6,6 +6,9 @@ use jbt_ir::watch::{self, Stopped};
 /// Rounds that move colours of the palette to the means of what is nearest to them.
 const ROUNDS: usize = 8;
 
+/// Colours between two looks whether the palette is still wanted.
+const AT_A_TIME: usize = 1 << 10;
+
 /// At most `most` colours, ascending, that stand for these, one of which at least is there.
 pub(super) fn reduced(colors: &[[u8; 3]], most: usize) -> Result<Vec<[u8; 3]>, Stopped> {
     let mut counted = counted(colors);
@@ -42,9 +45,9 @@ pub(super) fn reduced(colors: &[[u8; 3]], most: usize) -> Result<Vec<[u8; 3]>, S
     let counted = self::counted(colors);
     for _ in 0..ROUNDS {
         let mut groups = vec![Vec::new(); palette.len()];
-        for one in &counted {
+        for some in counted.chunks(AT_A_TIME) {
             watch::go_on()?;
-            groups[nearest(&palette, one.0)].push(one);
+            some.iter().for_each(|one| groups[nearest(&palette, one.0)].push(one));
         }
         for (color, group) in palette.iter_mut().zip(&groups).filter(|(_, group)| !group.is_empty()) {
             *color = mean(group.iter().copied());

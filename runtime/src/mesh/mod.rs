@@ -20,7 +20,7 @@
 //!              those at jumps of the field are put where halved edges say                   (vertex/suspect)
 //!              those that a crease keeps off the surface are brought onto it                (settle)
 //!              those on edges and corners of the surface are put there                      (vertex/sharp)
-//!     fold   = vertices on edges of the surface go back where triangles would be folded            (fold)
+//!     fold   = vertices on edges of the surface go back where triangles would be folded     (fold)
 //!     quads  = one for each crossed edge, through the four cells around it,
 //!              split along its shorter diagonal                                             (surface)
 //!     check that the mesh is closed                                                         (check)

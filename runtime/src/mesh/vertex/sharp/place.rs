@@ -85,8 +85,9 @@ pub(super) fn place<F: Field>(
     Ok(Some(region))
 }
 
-/// How far a vertex may go beyond its cell, in cells. Found by trial: of the triangles of 24 turned cubes 58
-/// are folded without edges, 32 with 0.5, and 29 with 0.6 to 1.
+/// How far a vertex may go beyond its cell, in cells. Found by trial, before vertices [went
+/// back](super::super::super::fold): of the triangles of 24 turned cubes 58 are folded without edges, 32 with
+/// 0.5, and 29 with 0.6 to 1.
 const BEYOND: f32 = 0.6;
 
 /// A cell and what is around it, as far as the lattice goes.
