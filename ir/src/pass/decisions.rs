@@ -35,6 +35,10 @@ pub const SIGNATURE_OUTPUT: &str = "signature";
 /// 1.5 * 2^23: subtracting it is the second half of rounding to a whole number.
 const ROUND: f32 = 12_582_912.0;
 
+/// Shifts to the left, whose result is added, and to the right, whose result is a difference: together they
+/// stir all bits of a number.
+const STIRS: [(u32, u32); 3] = [(10, 6), (3, 11), (15, 7)];
+
 /// The first output and its signature, a number from 1 to 2; `None` if no marked op can decide about it.
 #[must_use]
 pub fn decisions(function: &Function) -> Option<Function> {
@@ -49,7 +53,7 @@ pub fn decisions(function: &Function) -> Option<Function> {
     for block in function.blocks.values() {
         block.params.iter().for_each(|param| accumulators[param.index()] = true);
     }
-    let mut tracing = Tracing { builder, function, deciding, traced, accumulators, tables: Vec::new() };
+    let mut tracing = Tracing { builder, function, deciding, traced, accumulators, rows: Vec::new() };
     let result = translate(function, &mut tracing)[0];
     let d = &mut tracing.builder;
     d.set_origin(Origin::SHARED);
@@ -147,16 +151,15 @@ struct Tracing<'a> {
     /// For each value, whether it is an accumulator of a fold.
     accumulators: Vec<bool>,
     builder: FunctionBuilder,
-    /// Tables of open folds over several rows.
-    tables: Vec<Table>,
+    /// For each open fold over several rows, a number of its row and of those around it.
+    rows: Vec<Value>,
 }
 
 impl Tracing<'_> {
     /// Stirs bits, so that sums of them tell what they are sums of.
-    fn stirred(&mut self, bits: Value) -> Value {
+    fn stirred(&mut self, mut bits: Value, stirs: &[(u32, u32)]) -> Value {
         let d = &mut self.builder;
-        let mut bits = bits;
-        for (left, right) in [(10, 6), (3, 11), (15, 7)] {
+        for &(left, right) in stirs {
             let (left, right) = (d.bits_constant(left), d.bits_constant(right));
             let shifted = d.shl(bits, left);
             bits = d.int_add(bits, shifted);
@@ -166,19 +169,28 @@ impl Tracing<'_> {
         bits
     }
 
+    /// A number of the row in the fold that has just begun, and of the rows around it, made of all that is in
+    /// them. Marked ops share it: there may be dozens, as there may be columns.
+    fn row_number(&mut self, table: Table) -> Value {
+        let mut number = self.rows.last().copied().unwrap_or_else(|| self.builder.bits_constant(0));
+        for column in 0..self.function.tables[table].columns.len() {
+            let value = self.builder.column(table, column);
+            let bits = self.builder.to_bits(value);
+            number = self.builder.int_add(number, bits);
+            number = self.stirred(number, &STIRS[..1]);
+        }
+        number
+    }
+
     /// The number of a marked op, where it has this outcome.
     fn number(&mut self, inst: &InstData, outcome: u32) -> Value {
         let place = inst.results[0].index() as u32;
-        let mut number = self.builder.bits_constant(place.wrapping_mul(0x9e37_79b9).wrapping_add(outcome));
-        for table in self.tables.clone() {
-            for column in 0..self.function.tables[table].columns.len() {
-                let value = self.builder.column(table, column);
-                let bits = self.builder.to_bits(value);
-                let sum = self.builder.int_add(number, bits);
-                number = self.stirred(sum);
-            }
+        let place = place.wrapping_mul(0x9e37_79b9).wrapping_add(outcome);
+        let mut number = self.builder.bits_constant(place);
+        if let Some(&row) = self.rows.last() {
+            number = self.builder.int_add(number, row);
         }
-        self.stirred(number)
+        self.stirred(number, &STIRS)
     }
 
     fn sum(&mut self, a: Option<Value>, b: Option<Value>) -> Option<Value> {
@@ -253,7 +265,7 @@ impl Tracing<'_> {
             Op::Sub if marked => {
                 let (number, shifted) = (self.number(inst, 1), self.builder.to_bits(args[0].value));
                 let outcome = self.builder.int_add(number, shifted);
-                Some(self.stirred(outcome))
+                Some(self.stirred(outcome, &STIRS))
             }
             Op::Add if self.accumulates(inst) => {
                 let [a, b] = [args[0], args[1]].map(|operand| self.counted(operand));
@@ -317,10 +329,12 @@ impl Translation for Tracing<'_> {
     }
 
     fn enter(&mut self, fold: &Fold, _: usize, initial: AccumulatorParts<Value>) -> AccumulatorParts<Value> {
+        let params = self.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial).into();
         if fold.kind != FoldKind::Guard {
-            self.tables.push(fold.table);
+            let number = self.row_number(fold.table);
+            self.rows.push(number);
         }
-        self.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial).into()
+        params
     }
 
     fn leave(
@@ -330,7 +344,7 @@ impl Translation for Tracing<'_> {
         next: AccumulatorParts<Value>,
     ) -> AccumulatorParts<Value> {
         if fold.kind != FoldKind::Guard {
-            self.tables.pop();
+            self.rows.pop();
         }
         self.builder.set_origin(origin);
         let mut results: AccumulatorParts<Value> = self.builder.end_fold(&next).into();

@@ -1,0 +1,87 @@
+//! Signatures: each side of each row of a union has its own; and their code grows with the columns and the
+//! marked ops, not with the product of both.
+
+use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::interpret::run;
+use jbt_ir::pass::{PIPELINE, decisions, run_pipeline};
+use jbt_ir::{
+    Domain, FoldKind, Function, FunctionBuilder, Origin, Rows, Rule, Schema, Tables, Verified, verify,
+};
+
+/// The union of rows, each of which is the intersection of as many half-spaces as a row has numbers.
+fn union(columns: usize) -> Function {
+    let mut b = FunctionBuilder::new("union", &["x", "y", "z"]);
+    let names = (0..columns).map(|column| format!("c{column}")).collect();
+    let schema = Schema { name: "row".into(), columns: names, parent: None, slots: vec![] };
+    let table = b.table(schema);
+    let (x, zero) = (b.input(0), b.constant(0.0));
+    let united = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
+    b.set_origin(Origin::CREASE);
+    let first = b.column(table, 0);
+    let mut within = b.sub(first, x);
+    for column in 1..columns {
+        let number = b.column(table, column);
+        let side = if column % 2 == 0 { b.sub(number, x) } else { b.add(number, x) };
+        within = b.min(within, side);
+    }
+    let next = b.max(united, within);
+    b.set_origin(Origin::SHARED);
+    let union = b.end_fold(&[next])[0];
+    b.finish(&[("field".to_owned(), union)])
+}
+
+fn tables(rows: &[[f32; 4]]) -> Tables {
+    let mut tables = Tables::default();
+    let count = rows.len() as u32;
+    let (active, starts) = ((0..count).collect(), vec![0, count]);
+    let numbers = rows.concat().into_iter().collect();
+    tables.tables.push(Rows { count: rows.len(), stride: 4, numbers, starts, active, nodes: vec![] });
+    tables
+}
+
+/// Field and signature at points of the x-axis.
+fn signatures(function: &Verified, rows: &[[f32; 4]], points: &[f32]) -> Vec<(f32, f32)> {
+    let of = |&x: &f32| {
+        let answers = run(function, &tables(rows), &mut Scalar, &[x, 0.0, 0.0]);
+        (answers[0], answers[1])
+    };
+    points.iter().map(of).collect()
+}
+
+#[test]
+fn each_side_of_each_row_has_a_signature() {
+    // Segments [-c1, c0] and [-c3, c2] of the x-axis: both must hold.
+    let [left, right] = [[-1.0, 3.0, 9.0, 9.0], [3.0, -1.0, 9.0, 9.0]];
+    let plain = decisions(&union(4)).expect("it has edges");
+    let function = verify(run_pipeline(plain, PIPELINE, &mut |_, _| {})).expect("it keeps the rules");
+    let points = [-2.75, -2.5, -1.5, -1.25, 1.25, 1.5, 2.5, 2.75];
+    let found = signatures(&function, &[left, right], &points);
+    for (at, &(value, signature)) in points.iter().zip(&found) {
+        assert_eq!(value, 1.0 - (at.abs() - 2.0).abs(), "at {at}");
+        assert!((1.0..2.0).contains(&signature), "at {at}: {signature}");
+    }
+    // Two points on each side have one signature, and sides have different ones.
+    let is_same = |found: &[(f32, f32)]| -> Vec<bool> {
+        let each = |&(_, a): &(f32, f32)| found.iter().map(move |&(_, b)| a == b).collect::<Vec<bool>>();
+        found.iter().flat_map(each).collect()
+    };
+    let count = points.len();
+    let expected: Vec<bool> = (0..count * count).map(|n| n / count / 2 == n % count / 2).collect();
+    assert_eq!(is_same(&found), expected);
+    let turned = signatures(&function, &[right, left], &points);
+    assert_eq!(is_same(&turned), expected, "rows the other way round");
+    let nothing = [[0.0, -9.0, 1.0, 1.0], [0.5, -9.0, 1.0, 1.0]];
+    let beside = signatures(&function, &[nothing[0], left, nothing[1], right], &points);
+    assert_eq!(is_same(&beside), expected, "with rows that are 0 there");
+}
+
+#[test]
+fn code_grows_with_columns_and_marked_ops() {
+    let added = |columns: usize| {
+        let function = union(columns);
+        let with = decisions(&function).expect("it has edges");
+        run_pipeline(with, PIPELINE, &mut |_, _| {}).insts.len() - function.insts.len()
+    };
+    let [few, many] = [added(16), added(64)];
+    assert!(many <= 4 * few, "{few} instructions for 16 columns, {many} for 64");
+}
