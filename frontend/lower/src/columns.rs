@@ -126,7 +126,9 @@ pub(super) fn turn_of_computed(group: usize) -> Columns<impl Names> {
 
 /// The inverse of the map of a leaf, a warp or a formula.
 pub(super) fn map(kind: MapKind) -> Columns<impl Names> {
-    columns(kind.columns(), move |scene, member, row| kind.push_columns(&member.map(scene), row))
+    columns(kind.columns(), move |scene, member, row| {
+        member.with_map(scene, |map| kind.push_columns(map, row));
+    })
 }
 
 /// The inverse of the map of what is computed of an attribute group.
@@ -146,6 +148,12 @@ fn scale(scene: &Scene<'_>, leaf: Member) -> f64 {
     scene.field(leaf.field(scene)).scale
 }
 
+/// The support radius of a leaf in its pose.
+fn reach(scene: &Scene<'_>, leaf: Member) -> f64 {
+    let (field, numbers) = leaf.leaf(scene);
+    field.scale * numbers.radius
+}
+
 /// The skeleton of a leaf.
 pub(super) fn skeleton(kind: SkeletonKind) -> Columns<impl Names> {
     columns(kind.columns(), |scene, member, row| {
@@ -156,14 +164,14 @@ pub(super) fn skeleton(kind: SkeletonKind) -> Columns<impl Names> {
 /// A distance that is beyond the support of a leaf, in its pose.
 pub(super) fn beyond() -> Columns<impl Names> {
     columns(["beyond"], |scene, member, row| {
-        row.push(BEYOND * scale(scene, member) * member.numbers(scene).radius);
+        row.push(BEYOND * reach(scene, member));
     })
 }
 
 /// `-1 / R^2`, with the support radius of a leaf in its pose.
 pub(super) fn neg_inv_r2() -> Columns<impl Names> {
     columns(["neg_inv_r2"], |scene, member, row| {
-        row.push(-(scale(scene, member) * member.numbers(scene).radius).powi(-2));
+        row.push(-reach(scene, member).powi(-2));
     })
 }
 

@@ -157,6 +157,8 @@ pub(super) struct Scene<'a> {
     /// By the numbers of spaces without that of the world, which is 0.
     pub(super) insides: Vec<Inside>,
     pub(super) demand: Demand,
+    /// Whether a leaf is a run of particles. Where none is nobody has to look.
+    has_runs: bool,
 }
 
 impl<'a> Scene<'a> {
@@ -195,7 +197,11 @@ impl<'a> Scene<'a> {
 
     /// The primitive of a leaf that is no run.
     pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
-        match &self.tree.node(self.field(field).node).kind {
+        self.primitive_of(self.field(field))
+    }
+
+    fn primitive_of(&self, field: &LeafField) -> &'a Primitive {
+        match &self.tree.node(field.node).kind {
             NodeKind::Primitive(primitive) => primitive,
             NodeKind::Particles(_)
             | NodeKind::Combine(_)
@@ -227,6 +233,9 @@ impl<'a> Scene<'a> {
 
     /// The run of particles that an instance is, if it is one.
     pub(super) fn run(&self, id: InstanceId) -> Option<&PointRun> {
+        if !self.has_runs {
+            return None;
+        }
         match &self.instance(id).kind {
             InstanceKind::Leaf { field, .. } => self.field(*field).run.as_deref(),
             InstanceKind::Warp { .. }
@@ -257,10 +266,9 @@ impl<'a> Scene<'a> {
     }
 
     /// The numbers of a leaf, or of one of particles by its place in their arrays.
-    pub(super) fn leaf_numbers(&self, id: FieldId, place: usize) -> LeafNumbers<'a> {
-        let field = self.field(id);
+    pub(super) fn leaf_numbers(&self, field: &LeafField, place: usize) -> LeafNumbers<'a> {
         if field.run.is_none() {
-            let Primitive { radius, strength, falloff, .. } = self.primitive(id);
+            let Primitive { radius, strength, falloff, .. } = self.primitive_of(field);
             return LeafNumbers { radius: *radius, strength: *strength, falloff };
         }
         let particles = self.particles(field.node);

@@ -78,7 +78,8 @@ impl<'a> LeafInstances<'a> {
     #[must_use]
     pub fn alone(&self, index: usize) -> CheckedTree {
         let (field, place) = self.asked[index];
-        let LeafNumbers { radius, falloff, .. } = self.scene.leaf_numbers(field, place as usize);
+        let LeafNumbers { radius, falloff, .. } =
+            self.scene.leaf_numbers(self.scene.field(field), place as usize);
         let skeleton = self.scene.leaf_skeleton(field, place as usize).into_owned();
         let leaf = Primitive { skeleton, falloff: *falloff, radius, strength: 1.0 };
         let mut maps = Vec::new();

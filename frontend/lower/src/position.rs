@@ -148,23 +148,20 @@ impl Position {
             let least = if freedom == Freedom::Full { MapKind::Full } else { MapKind::Translation };
             return (map, 1.0, MapKind::of(&map).max(least));
         };
-        let turn = match symmetry {
-            Symmetry::Ball => DMat3::IDENTITY,
-            Symmetry::Axis | Symmetry::Arrow | Symmetry::None => {
-                symmetry.simplest(*similarity.turn() * pose.matrix3)
-            }
-        };
-        let map = DAffine3::from_mat3_translation(turn, self.map.transform_point3(pose.translation));
-        let least = match (symmetry, freedom) {
-            (Symmetry::Ball, _) => MapKind::Translation,
-            (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, Freedom::Turn | Freedom::Full) => {
-                MapKind::Full
-            }
-            (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, _) if turns => MapKind::Full,
+        let translation = self.map.transform_point3(pose.translation);
+        // Most leaves: nothing is left to look at.
+        if symmetry == Symmetry::Ball {
+            let map = DAffine3::from_translation(translation);
+            return (map, similarity.scale(), MapKind::Translation);
+        }
+        let turn = symmetry.simplest(*similarity.turn() * pose.matrix3);
+        let map = DAffine3::from_mat3_translation(turn, translation);
+        let least = match freedom {
+            Freedom::Turn | Freedom::Full => MapKind::Full,
+            Freedom::Scale | Freedom::Fixed if turns => MapKind::Full,
             // A scale that changes its sign mirrors.
-            (Symmetry::Arrow | Symmetry::None, Freedom::Scale) => MapKind::Scaling,
-            (Symmetry::Axis, Freedom::Scale)
-            | (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, Freedom::Fixed) => MapKind::Translation,
+            Freedom::Scale if symmetry != Symmetry::Axis => MapKind::Scaling,
+            Freedom::Scale | Freedom::Fixed => MapKind::Translation,
         };
         (map, similarity.scale(), MapKind::of(&map).max(least))
     }
@@ -208,15 +205,16 @@ impl MapKind {
 
     /// The numbers of the inverse of `map`.
     pub(super) fn push_columns(self, map: &DAffine3, row: &mut Vec<f64>) {
-        let inverse = self.inverse(map);
         match self {
             Self::Identity => {}
             Self::Translation => row.extend(map.translation.to_array()),
             Self::Scaling => {
+                let inverse = self.inverse(map);
                 row.push(inverse.matrix3.x_axis.x);
                 row.extend(inverse.translation.to_array());
             }
             Self::Full => {
+                let inverse = self.inverse(map);
                 for axis in 0..3 {
                     row.extend(inverse.matrix3.row(axis).to_array());
                     row.push(inverse.translation[axis]);

@@ -104,7 +104,7 @@ impl<'a> Supports<'a> {
                 return Rounded { core: extent.support, radius: 0.0 };
             }
             let (field, skeleton) = (scene.field(id), &scene.primitive(id).skeleton);
-            let numbers = scene.leaf_numbers(id, 0);
+            let numbers = scene.leaf_numbers(field, 0);
             let facts = LinearFacts::new(field.code.map, &field.map);
             let space = sizes[scene.position(field.position).space.0 as usize];
             let leaf = Leaf::new((skeleton, numbers), (field.map, field.scale, &facts), space);
@@ -259,7 +259,7 @@ fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
                 let leaf = scene.field(*field);
                 let rows = absolute(leaf.code.map.inverse(&leaf.map).matrix3) * DVec3::ONE;
                 let slope = |metric: f64, place: usize| {
-                    let LeafNumbers { radius, strength, .. } = scene.leaf_numbers(*field, place);
+                    let LeafNumbers { radius, strength, .. } = scene.leaf_numbers(leaf, place);
                     STEEPEST * strength.abs() * rows.max_element() * metric / (leaf.scale * radius)
                 };
                 match &leaf.run {
@@ -313,7 +313,7 @@ fn supports_of_run(
             let place = run.place(number);
             let skeleton = particles.point(place).into();
             let map = scene.leaf_map(field, place);
-            let numbers = scene.leaf_numbers(id, place);
+            let numbers = scene.leaf_numbers(field, place);
             let rounded = Leaf::new((&skeleton, numbers), (map, field.scale, &facts), space).whole();
             *support = Support::around(rounded.core, rounded.radius);
             extent.support = extent.support.hull(rounded.bounds());

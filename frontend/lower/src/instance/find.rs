@@ -80,6 +80,7 @@ impl<'a> Finder<'a> {
             computed: Vec::new(),
             insides: Vec::new(),
             demand: Demand::ALL,
+            has_runs: false,
         };
         Self {
             scene,

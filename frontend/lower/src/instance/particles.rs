@@ -97,6 +97,7 @@ impl Finder<'_> {
         let falloff = particles.falloff().code(depends);
         let code = LeafCode { map: inverse, skeleton: SkeletonKind::Point, falloff, strong };
         let run = Some(Box::new(run));
+        self.scene.has_runs = true;
         self.scene.fields.push(LeafField { node, position, uses: 1, map, scale, code, run });
         FieldId(self.scene.fields.len() as u32 - 1)
     }

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::instance::{Bound, Inside, Instance, InstanceKind, Scene};
+use crate::instance::{Bound, Inside, Instance, InstanceKind, LeafField, Scene};
 use crate::names::{ComputedId, FieldId, Hoist, InstanceId};
 use crate::run::{LeafNumbers, PointRun};
 use crate::shape::Shapes;
@@ -90,7 +90,13 @@ impl Member {
 
     /// The numbers of a leaf.
     pub(crate) fn numbers<'s>(self, scene: &Scene<'s>) -> LeafNumbers<'s> {
-        scene.leaf_numbers(self.field(scene), self.place(scene))
+        self.leaf(scene).1
+    }
+
+    /// The field and the numbers of a leaf.
+    pub(crate) fn leaf<'f, 's>(self, scene: &'f Scene<'s>) -> (&'f LeafField, LeafNumbers<'s>) {
+        let field = scene.field(self.field(scene));
+        (field, scene.leaf_numbers(field, self.place(scene)))
     }
 
     /// The tree node whose numbers it has.
@@ -169,19 +175,24 @@ impl Member {
         known(inside)
     }
 
-    /// The map from the pose of a leaf, or from where a warp or a formula stands, to where it is asked.
-    pub(crate) fn map(self, scene: &Scene<'_>) -> DAffine3 {
-        match self {
-            Self::Hoisted(Hoist::Field(field)) | Self::Piece(field, _) => scene.field(field).map,
-            Self::Hoisted(Hoist::Space(_)) => scene.position(self.inside(scene).position).map,
-            Self::Hoisted(Hoist::Computed(id)) => scene.computed(id).map,
+    /// Uses the map from the pose of a leaf, or from where a warp or a formula stands, to where it is asked.
+    /// It is large: only particles' maps are made for this.
+    pub(crate) fn with_map(self, scene: &Scene<'_>, work: impl FnOnce(&DAffine3)) {
+        let map = match self {
+            Self::Hoisted(Hoist::Field(field)) | Self::Piece(field, _) => &scene.field(field).map,
+            Self::Hoisted(Hoist::Space(_)) => &scene.position(self.inside(scene).position).map,
+            Self::Hoisted(Hoist::Computed(id)) => &scene.computed(id).map,
             Self::Operand { id, .. } | Self::Particle { id, .. } | Self::Hoisted(Hoist::Instance(id)) => {
                 match &scene.instance(id).kind {
                     InstanceKind::Leaf { field, .. } => {
-                        scene.leaf_map(scene.field(*field), self.place(scene))
+                        let field = scene.field(*field);
+                        if field.run.is_some() {
+                            return work(&scene.leaf_map(field, self.place(scene)));
+                        }
+                        &field.map
                     }
                     InstanceKind::Warp { position, .. } | InstanceKind::Expression { position, .. } => {
-                        scene.position(*position).map
+                        &scene.position(*position).map
                     }
                     InstanceKind::Reduce { .. }
                     | InstanceKind::Difference { .. }
@@ -189,7 +200,8 @@ impl Member {
                     | InstanceKind::Select { .. } => unreachable!("it looks at no coordinates"),
                 }
             }
-        }
+        };
+        work(map);
     }
 
     /// An operator.
