@@ -77,6 +77,10 @@ use place::{check_name, way_to};
 pub use tree::CheckedTree;
 use work::check_work;
 
+/// Nodes for which there is room from the start, if the tree may have as many: nodes are large, and are moved
+/// where a list grows. A larger list is moved by the system, without a copy.
+const ROOM: usize = 1 << 14;
+
 impl Model {
     /// The model as a valid tree, or all its errors.
     ///
@@ -150,7 +154,7 @@ impl Model {
         dependence: &mut Dependence,
     ) -> Vec<CheckedNode> {
         let groups = widths(&self.attributes);
-        let mut nodes: Vec<CheckedNode> = Vec::new();
+        let mut nodes: Vec<CheckedNode> = Vec::with_capacity(self.root.node().unfolded().min(ROOM));
         // Of nodes that several parents may have.
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
         // Each entry is a node, and whether its children have been visited.

@@ -42,6 +42,8 @@ pub struct Node {
     label: Option<Arc<NodeLabel>>,
     /// Whether a number of this node, or of one below, depends on a parameter.
     depends: bool,
+    /// How many nodes the tree has at most: shared ones are counted with every use.
+    unfolded: u32,
 }
 
 impl Node {
@@ -67,6 +69,11 @@ impl Node {
     #[must_use]
     pub fn depends_on_parameters(&self) -> bool {
         self.depends
+    }
+
+    /// How many nodes the tree has at most.
+    pub(crate) fn unfolded(&self) -> usize {
+        self.unfolded as usize
     }
 
     /// Its children, in order.
@@ -105,7 +112,8 @@ impl Tree {
     pub(crate) fn assemble(written: Written, children: Vec<Self>, span: Option<Span>) -> Self {
         let depends =
             written.dependent_numbers().next().is_some() || children.iter().any(|child| child.0.depends);
-        Self(Arc::new(Node { written, children, span, label: None, depends }))
+        let unfolded = children.iter().fold(1, |all: u32, child| all.saturating_add(child.0.unfolded));
+        Self(Arc::new(Node { written, children, span, label: None, depends, unfolded }))
     }
 
     /// The same node with a name, by which messages, paths and exported files know it: letters, digits and
@@ -152,6 +160,7 @@ impl Tree {
     pub(crate) fn push(&mut self, child: Self) {
         if let Some(node) = Arc::get_mut(&mut self.0) {
             node.depends |= child.0.depends;
+            node.unfolded = node.unfolded.saturating_add(child.0.unfolded);
             node.children.push(child);
             return;
         }
