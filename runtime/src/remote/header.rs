@@ -16,12 +16,14 @@ pub(super) fn write(tree: &CheckedTree, writer: &mut ByteWriter) {
     writer.u8(place(&ModelUp::ALL, up));
     writer.u8(place(&Handed::ALL, handed));
     writer.count(tree.attributes().len());
-    for AttributeGroup { name, default, mixing, kind, titles: _ } in tree.attributes() {
+    for AttributeGroup { name, default, mixing, kind, titles } in tree.attributes() {
         writer.text(name);
         writer.u8(place(&Mixing::ALL, *mixing));
         writer.u8(place(&GroupKind::ALL, *kind));
         writer.count(default.len());
         default.iter().for_each(|&number| writer.f64(number));
+        writer.count(titles.len());
+        titles.iter().for_each(|title| writer.text(title));
     }
 }
 
@@ -34,12 +36,18 @@ pub(super) fn read(reader: &mut ByteReader<'_>) -> Result<CheckedTree, FormatErr
     }
     let (up, handed) = (reader.one_of(&ModelUp::ALL)?, reader.one_of(&Handed::ALL)?);
     let mut attributes = Vec::new();
-    for _ in 0..reader.count(18)? {
+    for _ in 0..reader.count(26)? {
         let name = reader.text()?.into();
         let (mixing, kind) = (reader.one_of(&Mixing::ALL)?, reader.one_of(&GroupKind::ALL)?);
         let count = reader.count(8)?;
-        let default = (0..count).map(|_| reader.f64()).collect::<Result<_, _>>()?;
-        attributes.push(AttributeGroup { name, default, mixing, kind, ..AttributeGroup::color() });
+        let default = (0..count).map(|_| reader.f64()).collect::<Result<Vec<_>, _>>()?;
+        let titles = reader.count(8)?;
+        if titles != 0 && titles != default.len() {
+            return Err(reader.error("a group has a title for each real, or none"));
+        }
+        let titles = (0..titles).map(|_| Ok(reader.text()?.to_owned()));
+        let titles = titles.collect::<Result<_, FormatError>>()?;
+        attributes.push(AttributeGroup { name, default, mixing, kind, titles });
     }
     let anything = jbt_model::builder::point([0, 0, 0], 1);
     let model = Model {

@@ -6,6 +6,7 @@ use jbt_ir::table::{Rows, TableError, Tables};
 use jbt_ir::{Entity as _, Function, Store};
 use jbt_lower::RangeFunction;
 use jbt_lower::prune_info::PruneInfo;
+use jbt_model::attribute::AttributeGroup;
 use jbt_model::check::NodeId;
 use jbt_model::query::Query;
 
@@ -80,10 +81,13 @@ pub fn from_rows(
     let ranges = RangeFunction { function, tables, info: info(shape, rows) };
     let ranges = RangeProgram::new(compiler, ranges, None)?;
     let mut answers = Vec::with_capacity(shape.answers.len());
+    // Programs call their outputs by channels, whatever the titles of columns are.
+    let channels = |group: &AttributeGroup| AttributeGroup { titles: Arc::default(), ..group.clone() };
+    let channels: Vec<AttributeGroup> = shape.tree.attributes().iter().map(channels).collect();
     for (index, (query, function)) in shape.answers.iter().enumerate() {
         let tables = tables_of(function, rows, 1 + index)?;
         let kernel = compiler.kernel(function.clone(), Purpose::Answers(*query), None)?;
-        let layout = Layout::new(*query, shape.tree.attributes());
+        let layout = Layout::new(*query, &channels);
         if layout.names() != kernel.function.function().outputs {
             return Err(RemoteError::Query { query: query.name().into_owned() });
         }

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt::mesh::{LatticeBlock, MeshError};
 use jbt::remote::{ModelRows, ModelShape, RemoteError, RowSource, from_rows};
 use jbt::sample::Sampler;
-use jbt::{Box3, Compiler, Engine, Fineness, Model, Polygonize, PolygonizeError, Query};
+use jbt::tree::WeightOf;
+use jbt::{Box3, Compiler, Engine, Evaluator, Fineness, Model, Points, Polygonize, PolygonizeError, Query};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, tree};
 use rayon::prelude::*;
@@ -124,4 +125,30 @@ fn what_does_not_fit_is_refused() {
     let wide = jbt::mesh::Lattice::covering([-2.0; 3], [2.0; 3], 0.5).unwrap();
     let sampler = part.sampler(Query::FIELD).unwrap();
     assert!(matches!(part.dense(&sampler, &wide), Err(RemoteError::Bounds { .. })));
+}
+
+/// Columns of weights are called after leaves, elsewhere too, and have the bits of the whole there.
+#[test]
+fn weights_keep_their_titles() {
+    let text = "union { point { radius 1 } segment { from (1 0 0) to (2 0 0) radius 1 } }";
+    let tree = tree(text).with_weights(WeightOf::Leaves).expect("two leaves have weights");
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let compiled = compiler.compile(&tree);
+    let source = RowSource::new(&compiled, &Query::EVERY).expect("the model lowers");
+    let shape = ModelShape::from_bytes(source.shape().bytes()).expect("a shape reads back");
+    let bounds = Box3::new([-1.0; 3], [1.0; 3]);
+    let rows = source.rows(bounds).expect("the box is proper");
+    let part = from_rows(&compiler, &shape, &rows).expect("the rows fit");
+    let there = part.evaluator(Query::SURFACE).expect("it was asked for");
+    let here = compiled.evaluator(Query::SURFACE).expect("the model compiles");
+    assert_eq!(there.layout(), here.layout());
+    let names = here.layout().names();
+    assert!(names.iter().any(|name| name == "weights.union.1/segment"), "{names:?}");
+    let points = Points::from([[0.25, 0.5, 0.0], [0.5, 0.0, 0.25]]);
+    let of = |evaluator: &Evaluator| {
+        let mut samples = evaluator.samples();
+        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        samples.attribute("weights").expect("it is asked for").to_vec()
+    };
+    assert_eq!(of(&there), of(&here));
 }
