@@ -22,6 +22,51 @@ use std::sync::Arc;
 use std::thread::LocalKey;
 use std::time::{Duration, Instant};
 
+/// A clock for somebody who looks at it often, and needs the time every few milliseconds: while looks follow each
+/// other quickly, most of them are left out. A look at the real one takes as long as a block of points.
+#[derive(Debug)]
+pub struct SparseClock {
+    /// Looks that are left out from now on, and those that were before the last one.
+    left: Cell<u32>,
+    step: Cell<u32>,
+    last: Cell<Option<Instant>>,
+}
+
+impl SparseClock {
+    /// Looks that are left out one after the other, at most: few, because the work between the next ones may
+    /// take longer.
+    const STEP: u32 = 3;
+    /// The time from a look to the next one, up to which the looks that follow may be left out.
+    const QUICK: Duration = Duration::from_millis(1);
+
+    /// A clock that nobody has looked at.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { left: Cell::new(0), step: Cell::new(0), last: Cell::new(None) }
+    }
+
+    /// The time; `None` if it is too early to look.
+    pub fn now(&self) -> Option<Instant> {
+        let left = self.left.get();
+        if left > 0 {
+            self.left.set(left - 1);
+            return None;
+        }
+        let now = Instant::now();
+        let is_quick =
+            self.last.replace(Some(now)).is_some_and(|last| now.duration_since(last) < Self::QUICK);
+        self.step.set(if is_quick { Self::STEP.min(2 * self.step.get() + 1) } else { 0 });
+        self.left.set(self.step.get());
+        Some(now)
+    }
+}
+
+impl Default for SparseClock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// Says whether to go on.
 pub type Watch = Arc<dyn Fn() -> bool + Send + Sync>;
 
@@ -37,6 +82,7 @@ thread_local! {
     static LEFT: Cell<u32> = const { Cell::new(LOOKS) };
     /// When a watch was last asked.
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
+    static CLOCK: SparseClock = const { SparseClock::new() };
 }
 
 type WatchPlace = LocalKey<RefCell<Option<Watch>>>;
@@ -83,7 +129,7 @@ pub fn go_on() -> Result<(), Stopped> {
 
 /// Whether no watch has been asked on this thread for a while. The caller asks one.
 fn is_due() -> bool {
-    let now = Instant::now();
+    let Some(now) = CLOCK.with(SparseClock::now) else { return false };
     let is_due = LAST.get().is_none_or(|last| now.duration_since(last) >= ASKED);
     if is_due {
         LAST.set(Some(now));
@@ -213,6 +259,19 @@ mod tests {
             assert_eq!(count.load(Ordering::Relaxed), 4, "it was asked every few milliseconds");
             Watches::NONE.hold(|| (0..1000).for_each(|_| assert_eq!(go_on(), Ok(()))));
         });
+    }
+
+    #[test]
+    fn a_clock_leaves_looks_out_while_they_are_quick() {
+        let clock = SparseClock::new();
+        let seen = (0..4_000).filter(|_| clock.now().is_some()).count();
+        assert!(seen >= 1_000, "{seen}: at most three of four are left out");
+        let slow = || {
+            std::thread::sleep(SparseClock::QUICK);
+            clock.now().is_some()
+        };
+        (0..=SparseClock::STEP).for_each(|_| drop(slow()));
+        assert!((0..4).all(|_| slow()), "slow looks are all seen");
     }
 
     #[test]

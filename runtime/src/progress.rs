@@ -1,10 +1,11 @@
 //! How far work is, told by all of its threads to one hook that may cancel it.
 
-use std::cell::Cell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+use jbt_ir::watch::SparseClock;
 
 use crate::job::Hook;
 
@@ -31,29 +32,13 @@ pub(crate) struct Pulse {
 /// Milliseconds between two questions, if the work gives the opportunity: less than a third of what people
 /// take for at once.
 const PULSE: u64 = 15;
-/// Opportunities that pass without a look at the clock, at most: few, because the next ones may take longer.
-const STEP: u32 = 3;
-/// The time from a look at the clock to the next one, up to which opportunities may pass.
-const QUICK: Duration = Duration::from_millis(1);
 /// Work between two such opportunities, where it can be divided at will.
 const PACE: Duration = Duration::from_millis(8);
 /// The least that is worth a division: points of some blocks of every engine.
 const LEAST_POINTS: usize = 256;
 
-/// A thread's opportunities to ask.
-#[derive(Clone, Copy)]
-struct Opportunities {
-    /// How many pass until the next look at the clock.
-    left: u32,
-    /// How many passed before the last one.
-    step: u32,
-    /// When that was, from the beginning of its pulse.
-    last: Duration,
-}
-
 thread_local! {
-    static OPPORTUNITIES: Cell<Opportunities> =
-        const { Cell::new(Opportunities { left: 0, step: 0, last: Duration::MAX }) };
+    static CLOCK: SparseClock = const { SparseClock::new() };
 }
 
 impl Pulse {
@@ -63,17 +48,8 @@ impl Pulse {
 
     /// Whether it is time to ask. The caller does so.
     pub(crate) fn is_due(&self) -> bool {
-        let Opportunities { left, step, last } = OPPORTUNITIES.get();
-        if left > 0 {
-            OPPORTUNITIES.set(Opportunities { left: left - 1, step, last });
-            return false;
-        }
-        let now = self.begun.elapsed();
-        // What another pulse has left here may be later.
-        let is_quick = now.checked_sub(last).is_some_and(|since| since < QUICK);
-        let step = if is_quick { STEP.min(2 * step + 1) } else { 0 };
-        OPPORTUNITIES.set(Opportunities { left: step, step, last: now });
-        let now = now.as_millis() as u64;
+        let Some(now) = CLOCK.with(SparseClock::now) else { return false };
+        let now = now.duration_since(self.begun).as_millis() as u64;
         let is_due = now.saturating_sub(self.asked.load(Ordering::Relaxed)) >= PULSE;
         if is_due {
             self.asked.store(now, Ordering::Relaxed);

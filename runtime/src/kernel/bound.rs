@@ -86,7 +86,15 @@ impl Kernel {
         // it.
         let program = Arc::clone(&self.compiled.program);
         let program = BoundProgram::new(program, tables).expect("lowering gives tables that fit");
-        BoundKernel { kernel: Arc::clone(self), program, lowered, guarded: OnceLock::new() }
+        let few = self.between_looks(program.all());
+        BoundKernel { kernel: Arc::clone(self), program, lowered, few, guarded: OnceLock::new() }
+    }
+
+    /// Points that run without a look whether they are wanted: whole blocks that take some milliseconds.
+    fn between_looks(&self, selection: &Selection) -> usize {
+        let ops = of_selection(&self.ops_per_row, selection).max(1);
+        let blocks = self.engine().ops_between_looks() / ops / self.block() as u64;
+        blocks.max(1) as usize * self.block()
     }
 }
 
@@ -96,6 +104,8 @@ pub(crate) struct BoundKernel {
     program: BoundProgram,
     /// Those of the lowered function: others than its own only if the kernel is straight code.
     pub(crate) lowered: Arc<Tables>,
+    /// Points that run without a look with all rows.
+    few: usize,
     /// The guarded kernel with the same numbers.
     pub(crate) guarded: OnceLock<Option<Box<BoundKernel>>>,
 }
@@ -129,7 +139,7 @@ impl BoundKernel {
             inputs.iter().all(|plane| plane.len() == count)
                 && outputs.iter().all(|plane| plane.len() == count)
         };
-        let most = if count > block { self.between_looks(selection) } else { block };
+        let most = if count > self.few { self.kernel.between_looks(selection) } else { self.few };
         if count <= most || !is_even() {
             self.program.run_selected(selection, inputs, outputs)?;
             return Ok(lanes);
@@ -143,12 +153,5 @@ impl BoundKernel {
             self.program.run_selected(selection, &inputs, &mut outputs)?;
         }
         Ok(lanes)
-    }
-
-    /// Points that run without a look whether they are wanted: whole blocks that take some milliseconds.
-    fn between_looks(&self, selection: &Selection) -> usize {
-        let ops = of_selection(&self.kernel.ops_per_row, selection).max(1);
-        let blocks = self.kernel.engine().ops_between_looks() / ops / self.kernel.block() as u64;
-        blocks.max(1) as usize * self.kernel.block()
     }
 }
