@@ -12,7 +12,6 @@ use jbt_model::bounds::Bounds;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::{clip, nearest};
 use jbt_model::tree::Tree;
-use jbt_model::word::{begins_name, continues_name, is_statement};
 
 use super::database::{Combination, Database, ObjectContent, ProgramStep, Properties};
 use super::leaf::{self, Flaw, LeafStyle};
@@ -25,8 +24,6 @@ const HALF_THICKNESS: f64 = 0.1;
 const MANY: usize = 256;
 /// How far from a rotation counts as one.
 const RIGID: f64 = 1e-6;
-/// Letters of a name that its node has.
-const LONGEST_NAME: usize = 128;
 /// Names of a path that are shown from either end.
 const PATH_ENDS: usize = 6;
 
@@ -233,7 +230,7 @@ impl TreeBuilder<'_, '_> {
                     self.nodes += leaf.nodes;
                     // Half spaces have no box.
                     let bounds = if leaf.bounds.is_empty() { Bounds::EVERYWHERE } else { leaf.bounds };
-                    let part = SetPart { tree: leaf.tree.named(&self.name(object)), bounds };
+                    let part = SetPart { tree: leaf.tree.named(&self.database.node_name(object)), bounds };
                     Built { part: Some(part), color: None, has_radius: leaf.has_radius }
                 }
                 Err(flaw) => {
@@ -309,7 +306,8 @@ impl TreeBuilder<'_, '_> {
         });
         let constants = properties.constants().filter(|_| !is_plain);
         let part = part.map(|part| constants.fold(part, |part, one| with_constant(part, one, span)));
-        let part = part.map(|part| SetPart { tree: part.tree.named(&self.name(object)), ..part });
+        let part =
+            part.map(|part| SetPart { tree: part.tree.named(&self.database.node_name(object)), ..part });
         Some(Built { color: color.filter(|_| part.is_some()), part, has_radius })
     }
 
@@ -327,14 +325,6 @@ impl TreeBuilder<'_, '_> {
             }
         }
         Some(())
-    }
-
-    /// The name of an object, as a node may have it.
-    fn name(&self, object: u32) -> String {
-        let name = self.database.text(self.database.objects[object as usize].name);
-        let letter = |c: char| if continues_name(c) { c } else { '_' };
-        let name: String = name.chars().take(LONGEST_NAME).map(letter).collect();
-        if name.starts_with(begins_name) && !is_statement(&name) { name } else { format!("o_{name}") }
     }
 
     /// The colour of a combination: its own, or what the file has for the number of its region.
