@@ -249,6 +249,7 @@ def pov():
     yield "comments", b"/*" * MANY
     yield "conditions", b"#if (1) " * 300_000
     yield "includes of itself", b'#include "f.pov"\n' * 100
+    yield "includes of what is no scene", b"/*" + b"x" * MANY + b"*/ 0 " + b'#include "f.pov"\n' * 20_000
     yield "a file elsewhere", b'#include "/etc/passwd"\nblob { sphere { 0, 1, 1 } }'
     for scale in ["0", "1e300", "1e-300", "<1,0,1>", "0/0"]:
         yield f"scale {scale}", f"blob {{ {ball} scale {scale} }}".encode()

@@ -112,3 +112,19 @@ fn errors_of_files_have_places() {
         .code(1)
         .says("bad.json:2:24: error: there is no node of the type Rici");
 }
+
+/// Arrays of VTK that zlib has compressed, also where this package is built alone.
+#[test]
+fn compressed_arrays_are_read() {
+    let array = "AQAAABgAAAAAAAAAEgAAAA==eJxjYEAGDfZAwgGIHAAJTwGA";
+    let folder = Folder::new().with(
+        "a.vtp",
+        &format!(
+            "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\"><PolyData>
+            <Piece NumberOfPoints=\"2\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">
+            {array}</DataArray></Points></Piece></PolyData></VTKFile>"
+        ),
+    );
+    let text = folder.jbt(&["convert", "a.vtp", "--radius", "1", "-o", "-", "-q"]).code(0).stdout();
+    assert!(text.contains("at ((0 0 0) (1 2 3))"), "{text}");
+}

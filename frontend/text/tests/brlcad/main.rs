@@ -281,6 +281,31 @@ fn objects_are_chosen_by_name_or_by_being_nobody_s_part() {
     assert_eq!(inside(&twice, &Options::default(), &[PLACES[0], [5.0, 0.0, 0.0]]), [true, false]);
 }
 
+/// Nodes have the names of their objects, through a text and back.
+#[test]
+fn names_survive() {
+    let bytes = file([
+        ball("s.1", 0.0),
+        ball("let", 4.0),
+        ball("2", 8.0),
+        combination("hull.r", &[], &[("s.1", None), ("let", moved(1.0, 1.0))], &[MEMBER, MEMBER, UNION]),
+        combination("all", &[], &[("hull.r", None), ("hull.r", moved(20.0, 1.0)), ("2", None)], &[]),
+    ]);
+    let model = read(&bytes, &of("all")).model;
+    let printed = jbt_text::parse(jbt_text::print(&model).as_bytes(), &Options::default()).unwrap();
+    for model in [&model, &printed] {
+        for (path, places) in
+            [("all", 1), ("all/hull_r", 2), ("all/hull_r.1/s_1", 1), ("hull_r/o_let", 2), ("all/o_2", 1)]
+        {
+            let found = model.check().unwrap().find(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+            assert_eq!(found.len(), places, "{path}");
+        }
+        let hull = model.only("all/hull_r.0").unwrap().check().unwrap();
+        let is_inside = |x: f64| walk(&hull, [x, 0.0, 0.0]).field >= 0.5;
+        assert_eq!([0.0, 5.0, 8.0, 20.0].map(is_inside), [true, true, false, false]);
+    }
+}
+
 #[test]
 fn circles_are_errors_with_their_path() {
     let link = |name: &str, to: &'static str| combination(name, &[], &[("a", None), (to, None)], &[]);

@@ -335,6 +335,64 @@ fn what_is_wrong_is_told() {
 }
 
 /// Every beginning of a good file, and files with a byte changed, give an answer.
+/// What a file says besides what is read: a warning names it.
+#[test]
+fn nothing_is_left_out_silently() {
+    let two = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nPOINT_DATA 1\nSCALARS heat float 1\nLOOKUP_TABLE default\n1\nFIELD F 1\nvel 3 1 double\n1 2 3\n";
+    let xml = "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"1\"><PointData><DataArray type=\"Float32\" Name=\"heat\">1</DataArray></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0</DataArray></Points></Piece></PolyData></VTKFile>";
+    let faces = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int ends\nend_header\n0 0 0\n3 0 0 0\n";
+    let line = "ATOM      1  C   UNK A   1       0.000   0.000   0.000  1.00  0.00           C\n";
+    let models = format!("MODEL        1\n{line}ENDMDL\nMODEL        2\n{line}ENDMDL\n");
+    let tags =
+        ["Cartn_x", "Cartn_y", "Cartn_z", "pdbx_PDB_model_num"].map(|tag| format!("_atom_site.{tag}\n"));
+    let cif = format!("data_x loop_\n{} 0 0 0 1 0 0 0 2 0 0 0 3\n", tags.concat());
+    let wide: String = (0..12).map(|n| format!(",c{n}")).collect();
+    for (name, text, expected) in [
+        ("a.vtk", two, "`heat`, `vel` are left out: --values makes attributes of them"),
+        ("a.vtu", xml, "`heat` is left out: --values makes attributes of them"),
+        ("a.ply", faces, "`face` is left out: vertices alone are read"),
+        ("a.pdb", &models, "1 more model is left out: --frame chooses one"),
+        ("a.cif", &cif, "2 more models are left out: --frame chooses one"),
+        ("a.xyz", "1\n\nC 0 0 0\n1\n\nC 1 0 0\n", "1 more frame is left out: --frame chooses one"),
+        ("a.xyz", "1\n\nC 0 0 0\nC 1 0 0\n", "what begins no frame is left out, up to the end"),
+        ("a.xyz", "1\nProperties=species:S:1:pos:R:3:forces:R:3\nC 0 0 0 9 9 9\n", "`forces` is left out"),
+        (
+            "a.csv",
+            &format!("x,y,z{wide}\n0,0,0{}\n", ",1".repeat(12)),
+            "`c0`, `c1`, `c2`, `c3`, `c4`, `c5`, `c6`, `c7` and 4 more are left out: --values makes attributes of them",
+        ),
+    ] {
+        let (_, warnings) = try_read(name, text.as_bytes(), &options()).unwrap();
+        let is_known = |one: &&String| !one.contains("element");
+        assert_eq!(warnings.iter().filter(is_known).collect::<Vec<_>>(), [expected], "{name}: {text}");
+    }
+    // Whoever chooses a frame, or asks for an array, knows of the others.
+    let chosen = ParticleOptions { frame: Some(2), ..options() };
+    assert_eq!(try_read("a.pdb", models.as_bytes(), &chosen).unwrap().1, [""; 0]);
+    let asked = ParticleOptions { values: vec!["vel".into()], ..options() };
+    let (_, warnings) = try_read("a.vtk", two.as_bytes(), &asked).unwrap();
+    assert_eq!(warnings, ["`heat` is left out: --values makes attributes of them"]);
+    // No format takes names of arrays that it has not.
+    for (name, text) in [("a.xyz", "1\n\nC 0 0 0\n"), ("a.csv", "0 0 0\n"), ("a.pdb", line), ("a.vtu", xml)] {
+        let error = try_read(name, text.as_bytes(), &asked).expect_err(name);
+        assert!(error.contains("points have no array `vel`"), "{name}: {error}");
+    }
+}
+
+/// Atoms are known without an ending, clouds are not.
+#[test]
+fn atoms_are_known_by_their_content() {
+    for (text, expected) in [
+        ("2\nwater\nO 0 0 0.1\nH 0 1 0\n", SceneFormat::Xyz),
+        (" 1 \n\n8 0 0 1.0D+00", SceneFormat::Xyz),
+        ("2\n\nO 0 0\n", SceneFormat::Jbt),
+        ("jbt 1\npoint { radius 1 }\n", SceneFormat::Jbt),
+        ("1 2 3\n4 5 6\n7 8 9\n", SceneFormat::Jbt),
+    ] {
+        assert_eq!(SceneFormat::of_content(text.as_bytes()), expected, "{text}");
+    }
+}
+
 #[test]
 fn no_file_is_too_wrong() {
     let files: Vec<(&str, Vec<u8>)> = vec![

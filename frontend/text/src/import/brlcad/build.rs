@@ -230,7 +230,7 @@ impl TreeBuilder<'_, '_> {
                     self.nodes += leaf.nodes;
                     // Half spaces have no box.
                     let bounds = if leaf.bounds.is_empty() { Bounds::EVERYWHERE } else { leaf.bounds };
-                    let part = SetPart { tree: leaf.tree, bounds };
+                    let part = SetPart { tree: leaf.tree.named(&self.database.node_name(object)), bounds };
                     Built { part: Some(part), color: None, has_radius: leaf.has_radius }
                 }
                 Err(flaw) => {
@@ -306,6 +306,8 @@ impl TreeBuilder<'_, '_> {
         });
         let constants = properties.constants().filter(|_| !is_plain);
         let part = part.map(|part| constants.fold(part, |part, one| with_constant(part, one, span)));
+        let part =
+            part.map(|part| SetPart { tree: part.tree.named(&self.database.node_name(object)), ..part });
         Some(Built { color: color.filter(|_| part.is_some()), part, has_radius })
     }
 

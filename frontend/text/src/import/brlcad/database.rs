@@ -7,8 +7,12 @@ use jbt_model::attribute::Precedence;
 use jbt_model::constant::{LARGEST_CONSTANT, LeafConstant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::{Report, clip};
+use jbt_model::word::{begins_name, continues_name, is_statement};
 
 use super::solid::DatabaseSolid;
+
+/// Letters of a name that its node has.
+const LONGEST_NAME: usize = 128;
 
 /// The objects of a file, in its order.
 pub(super) struct Database<'a> {
@@ -151,6 +155,14 @@ impl<'a> Database<'a> {
     /// The bytes of a place as text, for messages.
     pub(super) fn text(&self, span: Span) -> String {
         String::from_utf8_lossy(self.at(span)).into_owned()
+    }
+
+    /// The name of an object, as a node may have it.
+    pub(super) fn node_name(&self, object: u32) -> String {
+        let name = self.text(self.objects[object as usize].name);
+        let letter = |c: char| if continues_name(c) { c } else { '_' };
+        let name: String = name.chars().take(LONGEST_NAME).map(letter).collect();
+        if name.starts_with(begins_name) && !is_statement(&name) { name } else { format!("o_{name}") }
     }
 
     /// The object of this name.

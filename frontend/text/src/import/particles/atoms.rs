@@ -57,6 +57,8 @@ pub(super) struct Atoms {
     waters: usize,
     alternates: usize,
     unknown: usize,
+    /// What else the file says that is left out.
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 impl Atoms {
@@ -97,14 +99,23 @@ impl Atoms {
         Ok(())
     }
 
+    /// A note about frames or models besides the one that is read, unless an option has chosen it.
+    pub(super) fn leave_out_frames(&mut self, count: usize, what: &str, options: &ParticleOptions) {
+        if count > 0 && options.frame.is_none() {
+            let (plural, verb) = if count == 1 { ("", "is") } else { ("s", "are") };
+            let message = format!("{count} more {what}{plural} {verb} left out: --frame chooses one");
+            self.warnings.push(Diagnostic::warning(None, message));
+        }
+    }
+
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
     /// The model: radii and colours are those of the elements.
-    pub(super) fn model(self, options: &ParticleOptions) -> ReadModel {
-        let mut warnings = Vec::new();
+    pub(super) fn model(mut self, options: &ParticleOptions) -> ReadModel {
+        let mut warnings = std::mem::take(&mut self.warnings);
         let mut note = |count: usize, one: &str, many: &str, rest: &str| {
             if count > 0 {
                 let what = if count == 1 { one } else { many };

@@ -197,6 +197,8 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
         let span = Span::new(bytes.len(), bytes.len());
         return Err(fault(span, "there are no atoms", "a table `_atom_site` with a row of this model"));
     }
+    let models = table.model.map_or(1, |(_, count)| count);
+    table.atoms.leave_out_frames(models - 1, "model", options);
     table.atoms.model(options)
 }
 

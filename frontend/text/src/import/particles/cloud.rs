@@ -44,6 +44,7 @@ impl Cloud {
 
     /// The model.
     pub(super) fn model(mut self, options: &ParticleOptions) -> ReadModel {
+        self.find(&options.values)?;
         let positions = self.positions.take().unwrap_or_else(|| Vec::<f32>::new().into());
         if positions.is_empty() {
             return Err(vec![Diagnostic::error(None, "there are no points")]);
@@ -87,6 +88,18 @@ impl Cloud {
         model.iso = Number::from(iso);
         model.attributes.extend(groups);
         Ok((model, self.warnings))
+    }
+
+    /// Makes sure that arrays that are asked for are there.
+    fn find(&self, names: &[String]) -> Result<(), Vec<Diagnostic>> {
+        let is_there = |name: &&String| self.values.iter().any(|(known, ..)| known == *name);
+        match names.iter().find(|name| !is_there(name)) {
+            Some(name) => {
+                let message = format!("points have no array `{}`", clip(name));
+                Err(vec![Diagnostic::error(None, message)])
+            }
+            None => Ok(()),
+        }
     }
 
     /// The kernels of the points, if they are to follow their neighbourhoods; their strengths are in those of

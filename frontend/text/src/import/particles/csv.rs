@@ -203,13 +203,20 @@ const NAMES: [&str; 6] = ["x", "y", "z", "r", "g", "b"];
 
 /// A note about arrays or columns that are left out.
 pub(super) fn left_out<'a>(names: impl Iterator<Item = &'a String>) -> Option<Diagnostic> {
-    let names: Vec<String> = names.map(|name| format!("`{}`", jbt_model::report::clip(name))).collect();
-    let (what, verb) = if names.len() == 1 { ("", "is") } else { ("", "are") };
-    (!names.is_empty()).then(|| {
-        Diagnostic::warning(
-            None,
-            format!("{what}{} {verb} left out: --values makes attributes of them", names.join(", ")),
-        )
+    let told = listed(names)?;
+    Some(Diagnostic::warning(None, format!("{told} left out: --values makes attributes of them")))
+}
+
+/// Names with the verb of a sentence about them, the first ones of many; nothing if there are none.
+pub(super) fn listed<'a>(names: impl Iterator<Item = &'a String>) -> Option<String> {
+    const MOST: usize = 8;
+    let mut names = names.map(|name| format!("`{}`", jbt_model::report::clip(name)));
+    let first: Vec<String> = names.by_ref().take(MOST).collect();
+    let verb = if first.len() == 1 { "is" } else { "are" };
+    let first = (!first.is_empty()).then(|| first.join(", "))?;
+    Some(match names.count() {
+        0 => format!("{first} {verb}"),
+        more => format!("{first} and {more} more are"),
     })
 }
 

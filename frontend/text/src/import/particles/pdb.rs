@@ -22,12 +22,12 @@ fn is_mine(bytes: &[u8]) -> bool {
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let mut atoms = Atoms::with_bfac();
     let wanted = options.frame.unwrap_or(1).max(1);
-    let (mut frame, mut has_models) = (1, false);
+    let (mut frame, mut models) = (1, 0_usize);
     for line in TextLines::from(bytes, 0) {
         let record = line.columns(0, 6).text;
         match record {
-            b"MODEL" => has_models = true,
-            b"ENDMDL" if frame == wanted => break,
+            b"MODEL" => models += 1,
+            b"ENDMDL" if frame == wanted && options.frame.is_some() => break,
             b"ENDMDL" => frame += 1,
             b"ATOM" | b"HETATM" if frame == wanted => read_atom(line, &mut atoms, options)?,
             _ => {}
@@ -35,9 +35,10 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     }
     if atoms.is_empty() {
         let span = Span::new(bytes.len(), bytes.len());
-        let expected = if has_models { "a model of this number" } else { "lines of ATOM or HETATM" };
+        let expected = if models > 0 { "a model of this number" } else { "lines of ATOM or HETATM" };
         return Err(fault(span, "there are no atoms", expected));
     }
+    atoms.leave_out_frames(models.saturating_sub(1), "model", options);
     atoms.model(options)
 }
 

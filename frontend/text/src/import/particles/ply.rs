@@ -9,7 +9,7 @@
 //! ```
 
 use super::bytes::NumberType;
-use super::csv::{PointTable, left_out};
+use super::csv::{PointTable, left_out, listed};
 use super::options::ParticleOptions;
 use super::scan::{TextLines, TextWord, fault, fault_at};
 use crate::import::format::SceneFormatRow;
@@ -75,8 +75,13 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             read_binary(bytes, (data, big_endian), &elements[..=index], &mut table)?;
         }
     }
+    let others = elements.iter().filter(|element| element.name != "vertex" && element.count > 0);
+    let others = listed(others.map(|element| &element.name));
     let mut cloud = table.cloud();
     cloud.warnings.extend(warning);
+    cloud.warnings.extend(
+        others.map(|told| Diagnostic::warning(None, format!("{told} left out: vertices alone are read"))),
+    );
     cloud.model(options)
 }
 

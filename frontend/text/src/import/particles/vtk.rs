@@ -12,8 +12,11 @@
 //!
 //! Cells are skipped. What stands behind the points is looked at for attributes alone.
 
+use std::collections::BTreeSet;
+
 use super::bytes::NumberType;
 use super::cloud::Cloud;
+use super::csv::left_out;
 use super::options::ParticleOptions;
 use super::scan::{TextLine, TextLines, TextWord, fault, fault_at};
 use crate::import::format::SceneFormatRow;
@@ -35,6 +38,8 @@ struct LegacyFile<'a> {
     bytes: &'a [u8],
     at: usize,
     binary: bool,
+    /// Arrays of points that nobody asks for.
+    others: BTreeSet<String>,
 }
 
 fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
@@ -54,12 +59,14 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             return Err(fault(span, "the coding is not known", "ASCII or BINARY"));
         }
     };
-    let mut file = LegacyFile { bytes, at: lines.at(), binary };
+    let mut file = LegacyFile { bytes, at: lines.at(), binary, others: BTreeSet::new() };
     let (count, positions) = file.points()?;
     let mut cloud = Cloud::at(positions);
+    let behind = file.values(count, options, &mut cloud);
     if !options.values.is_empty() {
-        file.values(count, options, &mut cloud)?;
+        behind?;
     }
+    cloud.warnings.extend(left_out(file.others.iter()));
     cloud.model(options)
 }
 
@@ -179,7 +186,7 @@ impl<'a> LegacyFile<'a> {
                 _ => {}
             }
         }
-        missing(options, cloud)
+        Ok(())
     }
 
     /// An array of points, which comes next: it is kept if it is asked for.
@@ -193,22 +200,12 @@ impl<'a> LegacyFile<'a> {
         // Those of cells are as long as nobody knows here; the next keyword is looked for.
         let Some(points) = points else { return Ok(()) };
         let numbers = self.numbers(of, width.saturating_mul(points))?;
-        if options.values.contains(&name) && width > 0 {
+        if !options.values.contains(&name) {
+            self.others.insert(name);
+        } else if width > 0 {
             cloud.values.push((name, width, numbers));
         }
         Ok(())
-    }
-}
-
-/// Arrays that are asked for and not there.
-pub(super) fn missing(options: &ParticleOptions, cloud: &Cloud) -> Result<(), Vec<Diagnostic>> {
-    let is_there = |name: &String| cloud.values.iter().any(|(known, ..)| known == name);
-    match options.values.iter().find(|name| !is_there(name)) {
-        Some(name) => {
-            let message = format!("points have no array `{}`", jbt_model::report::clip(name));
-            Err(vec![Diagnostic::error(None, message)])
-        }
-        None => Ok(()),
     }
 }
 

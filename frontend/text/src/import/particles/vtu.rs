@@ -11,11 +11,13 @@
 //! </VTKFile>
 //! ```
 
+use std::collections::BTreeSet;
+
 use super::bytes::NumberType;
 use super::cloud::Cloud;
+use super::csv::left_out;
 use super::options::ParticleOptions;
 use super::scan::{TextLines, fault_at};
-use super::vtk::missing;
 use super::xml::{Tag, Tags};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
@@ -58,6 +60,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     let mut place = VtuPlace::Elsewhere;
     let mut positions: Vec<f64> = Vec::new();
     let mut values: Vec<(String, usize, Vec<f64>)> = Vec::new();
+    let mut others = BTreeSet::new();
     for tag in (Tags { bytes, at: 0 }).take_while(|tag| tag.name != b"AppendedData") {
         match tag.name {
             b"Points" => place = if tag.closes { VtuPlace::Elsewhere } else { VtuPlace::Points },
@@ -73,9 +76,11 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
                 positions.extend(numbers);
             }
             b"DataArray" if !tag.closes && place == VtuPlace::PointData => {
-                let Some(name) = tag.attribute("Name").filter(|name| options.values.contains(name)) else {
+                let Some(name) = tag.attribute("Name") else { continue };
+                if !options.values.contains(&name) {
+                    others.insert(name);
                     continue;
-                };
+                }
                 let width = tag.attribute("NumberOfComponents").and_then(|it| it.parse().ok()).unwrap_or(1);
                 let numbers = coding.numbers(&tag)?;
                 match values.iter_mut().find(|(known, ..)| *known == name) {
@@ -91,7 +96,7 @@ fn read(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
     }
     let mut cloud = Cloud::at(positions);
     cloud.values = values.into_iter().map(|(name, width, all)| (name, width.max(1), all.into())).collect();
-    missing(options, &cloud)?;
+    cloud.warnings.extend(left_out(others.iter()));
     cloud.model(options)
 }
 

@@ -21,7 +21,17 @@ use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["xyz"], "atoms, a cloud of points or raw numbers", |_| false, read);
+    SceneFormatRow::of_particles(&["xyz"], "atoms, a cloud of points or raw numbers", is_atoms, read);
+
+/// Whether these are atoms: a number alone, a line of any text, a word and three numbers. Of a cloud nothing
+/// tells that it is one.
+fn is_atoms(bytes: &[u8]) -> bool {
+    let mut lines = TextLines::from(bytes, 0);
+    let count = lines.next().and_then(|head| head.columns(0, usize::MAX).whole());
+    let first = lines.nth(1);
+    let mut words = first.into_iter().flat_map(TextLine::words).skip(1);
+    count.is_some() && (0..3).all(|_| words.next().is_some_and(|word| word.number().is_some()))
+}
 
 /// The beginning of a file that tells text from numbers.
 const BEGINNING: usize = 4096;
@@ -78,14 +88,31 @@ fn chemistry(bytes: &[u8], options: &ParticleOptions) -> ReadModel {
             let Some(line) = lines.next().filter(|line| !line.is_blank()) else {
                 return Err(too_few(end(&lines), count, number));
             };
-            atoms.push(atom(line, columns)?);
+            atoms.push(atom(line, &columns)?);
         }
         if atoms.is_empty() {
             return Err(fault(head.span(), "there are no atoms", "at least one"));
         }
+        atoms.warnings.extend(columns.left_out);
+        let (others, rest) = other_frames(&mut lines);
+        atoms.leave_out_frames(others, "frame", options);
+        atoms.warnings.extend(rest.map(|line| {
+            Diagnostic::warning(Some(line.span()), "what begins no frame is left out, up to the end")
+        }));
         return atoms.model(options);
     }
     unreachable!("a file has an end")
+}
+
+/// How many frames follow, and the first line behind them that begins none.
+fn other_frames<'a>(lines: &mut TextLines<'a>) -> (usize, Option<TextLine<'a>>) {
+    let mut frames = 0;
+    while let Some(head) = next_frame(lines) {
+        let Some(count) = head.columns(0, usize::MAX).whole() else { return (frames, Some(head)) };
+        lines.take(count.saturating_add(1)).for_each(drop);
+        frames += 1;
+    }
+    (frames, None)
 }
 
 /// The head of the next frame: blank lines may stand before it.
@@ -98,14 +125,15 @@ fn too_few(span: Span, count: usize, found: usize) -> Vec<Diagnostic> {
 }
 
 /// Where symbol and place stand in a line.
-#[derive(Clone, Copy)]
 struct XyzColumns {
     symbol: usize,
     place: usize,
+    /// A note about properties that are left out.
+    left_out: Option<Diagnostic>,
 }
 
 impl XyzColumns {
-    const PLAIN: Self = Self { symbol: 0, place: 1 };
+    const PLAIN: Self = Self { symbol: 0, place: 1, left_out: None };
 
     /// Those that an extended file tells in its second line: `Properties=species:S:1:pos:R:3:..`.
     fn of(comment: TextLine<'_>) -> Self {
@@ -113,21 +141,23 @@ impl XyzColumns {
         let Some((_, rest)) = text.split_once("Properties=") else { return Self::PLAIN };
         let list = rest.trim_start_matches('"');
         let list = list.split(|c: char| c.is_whitespace() || c == '"').next().unwrap_or("");
-        let (mut at, mut symbol, mut place) = (0_usize, None, None);
+        let (mut at, mut symbol, mut place, mut others) = (0_usize, None, None, Vec::new());
         let parts: Vec<&str> = list.split(':').collect();
         for property in parts.chunks_exact(3) {
             match property[0] {
                 "species" | "Z" => symbol = Some(at),
                 "pos" => place = Some(at),
-                _ => {}
+                other => others.push(other.to_owned()),
             }
             at = at.saturating_add(property[2].parse().unwrap_or(1));
         }
-        symbol.zip(place).map_or(Self::PLAIN, |(symbol, place)| Self { symbol, place })
+        let Some((symbol, place)) = symbol.zip(place) else { return Self::PLAIN };
+        let note = |told| Diagnostic::warning(None, format!("{told} left out"));
+        Self { symbol, place, left_out: csv::listed(others.iter()).map(note) }
     }
 }
 
-fn atom(line: TextLine<'_>, columns: XyzColumns) -> Result<Atom, Vec<Diagnostic>> {
+fn atom(line: TextLine<'_>, columns: &XyzColumns) -> Result<Atom, Vec<Diagnostic>> {
     let words: Vec<TextWord<'_>> =
         line.words().take(columns.place.max(columns.symbol).saturating_add(3)).collect();
     let word = |index: usize, what: &str| {

@@ -46,8 +46,8 @@ impl PovTexts {
         let mut texts =
             Self { bytes: scene.to_vec(), end: scene.len(), places: HashMap::new(), files: Vec::new() };
         let mut reader = files.reader();
-        // Which of the files are known, by their identity.
-        let mut known: HashMap<String, usize> = HashMap::new();
+        // Which of the files are known, by their identity; nothing for one that is no scene.
+        let mut known: HashMap<String, Option<usize>> = HashMap::new();
         let mut next = 0;
         while next <= texts.files.len() {
             let (range, from) = match next.checked_sub(1).map(|file| &texts.files[file]) {
@@ -57,21 +57,19 @@ impl PovTexts {
             for name in names(&texts.bytes, range) {
                 let left = MAX_SCENE_BYTES.saturating_sub(texts.bytes.len() + 1);
                 let Ok(file) = reader.read_at_most(&name, from.as_deref(), left) else { continue };
-                let place = match known.get(&file.identity) {
-                    Some(&place) => place,
-                    None if !begins_like_scene(&file.bytes) => continue,
-                    None => {
+                let place = *known.entry(file.identity.clone()).or_insert_with(|| {
+                    begins_like_scene(&file.bytes).then(|| {
                         texts.bytes.push(0);
                         let start = texts.bytes.len();
                         texts.bytes.extend_from_slice(&file.bytes);
-                        texts
-                            .files
-                            .push(PovFile { path: file.path.clone(), range: start..texts.bytes.len() });
-                        known.insert(file.identity.clone(), texts.files.len() - 1);
+                        let range = start..texts.bytes.len();
+                        texts.files.push(PovFile { path: file.path.clone(), range });
                         texts.files.len() - 1
-                    }
-                };
-                texts.places.insert((from.clone(), name), place);
+                    })
+                });
+                if let Some(place) = place {
+                    texts.places.insert((from.clone(), name), place);
+                }
             }
             next += 1;
         }
