@@ -131,17 +131,20 @@ fn the_schedule_never_needs_more() {
     assert!(better > FUNCTIONS / 10, "only {better} of {FUNCTIONS} got better");
 }
 
-/// The peaks of random functions and of their gradients, together: what makes a heuristic worse shows here.
+/// The peaks of the gradients of random functions, together: what makes a heuristic worse shows here.
 #[test]
 fn orders_are_as_good_as_they_were() {
-    let functions = (0..FUNCTIONS).map(|seed| random::function(seed, 100));
-    let all = functions.flat_map(|function| [dce(&(GRADIENT.run)(&function)), dce(&function)]);
     let (mut before, mut after) = (0, 0);
-    for function in all {
+    for (size, seed) in
+        [60, 100, 200].into_iter().flat_map(|size| (0..FUNCTIONS).map(move |seed| (size, seed)))
+    {
+        let unordered = PIPELINE.iter().filter(|pass| pass.name != "schedule");
+        let function = (GRADIENT.run)(&random::function(seed, size));
+        let function = run_pipeline(function, unordered, &mut |_, _| {});
         before += max_live(&function);
         after += max_live(&schedule(&function));
     }
-    assert!(after <= 3379, "{after} values at the peaks together, {before} as they were written");
+    assert!(after <= 6195, "{after} values at the peaks together, {before} as they were written");
 }
 
 #[test]
