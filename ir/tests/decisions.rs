@@ -134,3 +134,29 @@ fn what_nothing_decides_has_no_signature() {
         |function: &Function| -> usize { function.blocks.values().map(|block| block.params.len()).sum() };
     assert_eq!((accumulators(&before), accumulators(&with)), (3, 5), "a signature for each union alone");
 }
+
+#[test]
+fn what_is_0_counts_outside_of_folds() {
+    // 0 beyond 0.5, on both sides of 0.75; both may be on the surface of the sum.
+    for fused in [false, true] {
+        let mut b = FunctionBuilder::new("sum", &["x", "y", "z"]);
+        let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
+        let [end, middle] = [0.5, 0.75].map(|number| b.constant(number));
+        b.set_origin(Origin::CREASE);
+        let (beyond, from) = (b.sub(end, x), b.sub(x, middle));
+        let (near, away) = (b.max(beyond, zero), b.abs(from));
+        b.set_origin(Origin::SHARED);
+        let sum = if fused {
+            b.fma(near, away, y)
+        } else {
+            let product = b.mul(near, away);
+            b.add(product, y)
+        };
+        let plain = decisions(&b.finish(&[("field".to_owned(), sum)])).expect("it has edges");
+        let function = verify(plain).expect("it keeps the rules");
+        let found = signatures(&function, &[], &[0.55, 0.7, 0.8, 0.9]);
+        let signature: Vec<f32> = found.iter().map(|&(_, signature)| signature).collect();
+        assert_eq!((signature[0], signature[2]), (signature[1], signature[3]));
+        assert_ne!(signature[0], signature[2]);
+    }
+}
