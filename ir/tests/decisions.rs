@@ -86,8 +86,8 @@ fn code_grows_with_columns_and_marked_ops() {
     assert!(many <= 4 * few, "{few} instructions for 16 columns, {many} for 64");
 }
 
-/// The sum of two unions in one fold, beside a sum that nothing decides. A row of the second union is 0 beyond its
-/// first number, on both sides of its second.
+/// The sum of two unions in one fold, beside a sum that nothing decides. A row of the second union is 0
+/// beyond its first number, on both sides of its second.
 fn two_unions() -> Function {
     let mut b = FunctionBuilder::new("two", &["x", "y", "z"]);
     let names = (0..4).map(|column| format!("c{column}")).collect();

@@ -513,7 +513,7 @@ mod tests {
         assert!(of_fma(1e-20).is_none(), "a product of about -1e-20 may leave a -0");
     }
 
-    /// The gate of a sum of one clamped number, with steps before the gate that it does not need, and after it.
+    /// Whether a sum of one clamped number has a gate: with steps before it that it does not need, and after.
     fn spares(before: usize, after: usize) -> bool {
         let mut b = FunctionBuilder::new("fold", &["x"]);
         let schema =
