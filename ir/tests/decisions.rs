@@ -85,3 +85,78 @@ fn code_grows_with_columns_and_marked_ops() {
     let [few, many] = [added(16), added(64)];
     assert!(many <= 4 * few, "{few} instructions for 16 columns, {many} for 64");
 }
+
+/// The sum of two unions in one fold, beside a sum that nothing decides. A row of the second union is 0
+/// beyond its first number, on both sides of its second.
+fn two_unions() -> Function {
+    let mut b = FunctionBuilder::new("two", &["x", "y", "z"]);
+    let names = (0..4).map(|column| format!("c{column}")).collect();
+    let table = b.table(Schema { name: "row".into(), columns: names, parent: None, slots: vec![] });
+    let (x, zero) = (b.input(0), b.constant(0.0));
+    let accumulators = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero, zero, zero]);
+    let [count, first, second] = [0, 1, 2].map(|place| accumulators[place]);
+    let columns = [0, 1, 2, 3].map(|column| b.column(table, column));
+    let count = b.add(count, columns[0]);
+    b.set_origin(Origin::CREASE);
+    let sides = [b.sub(columns[0], x), b.add(columns[1], x)];
+    let within = b.min(sides[0], sides[1]);
+    let first = b.max(first, within);
+    let (beyond, from) = (b.sub(columns[2], x), b.sub(x, columns[3]));
+    let (near, away) = (b.max(beyond, zero), b.abs(from));
+    let term = b.mul(near, away);
+    let second = b.max(second, term);
+    b.set_origin(Origin::SHARED);
+    let results = b.end_fold(&[count, first, second]);
+    let sum = b.add(results[1], results[2]);
+    let function = b.finish(&[("field".to_owned(), sum), ("count".to_owned(), results[0])]);
+    verify(function).expect("it keeps the rules").into_function()
+}
+
+#[test]
+fn what_is_0_does_not_count() {
+    let plain = decisions(&two_unions()).expect("it has edges");
+    let function = verify(plain).expect("it keeps the rules");
+    // The first union is 1 - x to the right of 0; the second is 0 beyond 0.5, with another side beyond 0.75.
+    let rows = [[1.0, 1.0, 0.5, 0.75]];
+    let found = signatures(&function, &rows, &[0.55, 0.7, 0.8, 0.9, -0.25, -0.5, 0.25]);
+    let signature: Vec<f32> = found.iter().map(|&(_, signature)| signature).collect();
+    assert_eq!(signature[..4], [signature[0]; 4], "one side of the first union, and the second is 0");
+    assert_eq!(signature[4], signature[5], "both unions, on one side of each");
+    assert_ne!(signature[0], signature[6], "the second union is no longer 0");
+    assert_ne!(signature[4], signature[6], "the first union has another side");
+}
+
+#[test]
+fn what_nothing_decides_has_no_signature() {
+    let before = two_unions();
+    let with = decisions(&before).expect("it has edges");
+    let accumulators =
+        |function: &Function| -> usize { function.blocks.values().map(|block| block.params.len()).sum() };
+    assert_eq!((accumulators(&before), accumulators(&with)), (3, 5), "a signature for each union alone");
+}
+
+#[test]
+fn what_is_0_counts_outside_of_folds() {
+    // 0 beyond 0.5, on both sides of 0.75; both may be on the surface of the sum.
+    for fused in [false, true] {
+        let mut b = FunctionBuilder::new("sum", &["x", "y", "z"]);
+        let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
+        let [end, middle] = [0.5, 0.75].map(|number| b.constant(number));
+        b.set_origin(Origin::CREASE);
+        let (beyond, from) = (b.sub(end, x), b.sub(x, middle));
+        let (near, away) = (b.max(beyond, zero), b.abs(from));
+        b.set_origin(Origin::SHARED);
+        let sum = if fused {
+            b.fma(near, away, y)
+        } else {
+            let product = b.mul(near, away);
+            b.add(product, y)
+        };
+        let plain = decisions(&b.finish(&[("field".to_owned(), sum)])).expect("it has edges");
+        let function = verify(plain).expect("it keeps the rules");
+        let found = signatures(&function, &[], &[0.55, 0.7, 0.8, 0.9]);
+        let signature: Vec<f32> = found.iter().map(|&(_, signature)| signature).collect();
+        assert_eq!((signature[0], signature[2]), (signature[1], signature[3]));
+        assert_ne!(signature[0], signature[2]);
+    }
+}

@@ -279,3 +279,55 @@ pub struct RangeFunction {
     /// What there is to know about the tables.
     pub info: PruneInfo,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn an_operand_that_cannot_decide_is_spared() {
+        use DecisionKind::{DifferenceLeft, DifferenceRight, IntersectionOperand, UnionOperand};
+        // What ranges of the operand and of the operator say; equal ends may be equal numbers.
+        let (below, touching, above) = ([0.0, 0.25], [0.0, 0.5], [1.5, 2.0]);
+        let node = [0.5, 1.0];
+        assert!(UnionOperand.spares(below, node, 1.0) && !UnionOperand.spares(touching, node, 1.0));
+        assert!(IntersectionOperand.spares(above, node, 1.0));
+        assert!(!IntersectionOperand.spares([1.0, 2.0], node, 1.0));
+        // The left side decides where it is less than what the right side leaves, which is at most iso2.
+        assert!(DifferenceLeft.spares(above, node, 1.25));
+        assert!(!DifferenceLeft.spares([1.0, 2.0], node, 1.25), "it may be the result");
+        assert!(!DifferenceLeft.spares(above, node, 1.0), "a right side of 0 leaves iso2");
+        // The right side decides where iso2 without it is no more than the result.
+        assert!(DifferenceRight.spares([0.0, 0.25], node, 1.5));
+        assert!(!DifferenceRight.spares([0.0, 0.5], node, 1.5), "1.5 - 0.5 may be the result");
+        assert!(!DifferenceRight.spares([0.0, 0.75], node, 1.5));
+        assert!(!DifferenceRight.spares([-1.0, -0.5], node, 1.0), "iso2 may be the result");
+    }
+
+    #[test]
+    fn a_box_misses_what_is_farther_than_the_radius() {
+        let support = Support { low: [-1.0, -2.0, -3.0], high: [1.0, 2.0, 3.0], radius_squared: 4.0 };
+        let misses = |low: [f32; 3]| support.misses(low, low.map(|side| side + 0.5));
+        for axis in 0..3 {
+            let end = [1.0, 2.0, 3.0][axis];
+            let at = |side: f32| std::array::from_fn(|other| if other == axis { side } else { 0.0 });
+            assert!(!misses(at(end + 2.0)) && misses(at(end + 2.25)), "above on axis {axis}");
+            assert!(!misses(at(-end - 2.5)) && misses(at(-end - 2.75)), "below on axis {axis}");
+        }
+        assert!(!misses([0.0; 3]));
+        assert!(!misses([2.0, 3.0, 4.0]), "the root of 3 is less than 2");
+        assert!(misses([2.25, 3.25, 4.25]), "1.25 on each axis is more than 2");
+        assert!(!Support::EVERYWHERE.misses([1e30; 3], [1e30; 3]));
+    }
+
+    #[test]
+    fn rounding_of_a_support_is_outwards_and_little() {
+        let core = Bounds::new(DVec3::splat(-0.1), DVec3::splat(0.3));
+        let support = Support::around(core, 0.7);
+        assert!(support.low.iter().all(|&side| f64::from(side) <= -0.1 && side >= -0.100_000_02));
+        assert!(support.high.iter().all(|&side| f64::from(side) >= 0.3 && side <= 0.300_000_04));
+        let radius = f64::from(support.radius_squared).sqrt();
+        assert!(radius > 0.7 && radius < 0.7 * (1.0 + 2e-6), "{radius}");
+    }
+}

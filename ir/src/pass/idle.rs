@@ -342,17 +342,27 @@ fn computed(op: Op, args: &[Now]) -> Option<Now> {
 mod tests {
     use super::*;
     use crate::builder::FunctionBuilder;
+    use crate::entity::Table;
     use crate::function::{Rule, Schema};
     use crate::op::Domain;
 
     /// A fold of ten roots and what `write` makes of the accumulator, which begins at `start`, and of a
     /// clamped number.
     fn fold(start: f32, write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value) -> Option<Gate> {
+        fold_of(FoldKind::Rows, start, write)
+    }
+
+    /// The same for a kind of fold.
+    fn fold_of(
+        kind: FoldKind,
+        start: f32,
+        write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value,
+    ) -> Option<Gate> {
         let mut b = FunctionBuilder::new("fold", &["x"]);
         let columns = vec!["c".to_owned()];
         let table = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
         let (x, zero, start) = (b.input(0), b.constant(0.0), b.constant(start));
-        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[start])[0];
+        let acc = b.begin_fold(table, (kind, Rule::Neutral), &[start])[0];
         let column = b.column(table, 0);
         let reach = b.sub(column, x);
         let near = b.max(reach, zero);
@@ -401,16 +411,136 @@ mod tests {
     }
 
     #[test]
-    fn what_spares_little_is_no_gate() {
+    fn bits_are_known_where_the_program_has_them() {
+        let masked = |b: &mut FunctionBuilder, acc, term| {
+            let (bits, mask) = (b.to_bits(term), b.bits_constant(0x7fff_ffff));
+            let bits = b.bit_and(bits, mask);
+            let size = b.from_bits(bits);
+            b.add(acc, size)
+        };
+        assert!(fold(0.0, masked).is_some());
+        let marked = |b: &mut FunctionBuilder, acc, term| {
+            let (bits, mark) = (b.to_bits(term), b.bits_constant(0x3f80_0000));
+            let bits = b.bit_or(bits, mark);
+            let one = b.from_bits(bits);
+            b.add(acc, one)
+        };
+        assert!(fold(0.0, marked).is_none(), "each row adds 1");
+    }
+
+    #[test]
+    fn a_guard_may_also_yield_its_initial_value() {
+        assert!(fold_of(FoldKind::Guard, 0.0, |_, _, term| term).is_some());
+        assert!(fold_of(FoldKind::Guard, 1.0, |_, _, term| term).is_none());
+        let zero_of_a_sign = |b: &mut FunctionBuilder, _, term| {
+            let minus = b.constant(-1.0);
+            b.mul(term, minus)
+        };
+        assert!(fold_of(FoldKind::Guard, -0.0, zero_of_a_sign).is_none(), "which zero it is, nobody knows");
+        let other = |b: &mut FunctionBuilder, acc, term| {
+            let sum = b.add(acc, term);
+            b.sqrt(sum)
+        };
+        assert!(fold_of(FoldKind::Guard, 2.0, other).is_none());
+        assert!(fold_of(FoldKind::Guard, 0.0, Domain::add).is_some());
+    }
+
+    #[test]
+    fn comparisons_with_what_is_positive_are_known() {
+        let below = |b: &mut FunctionBuilder, acc, term| {
+            let (is_below, one) = (b.lt(term, acc), b.constant(1.0));
+            let kept = b.select(is_below, acc, one);
+            b.max(term, kept)
+        };
+        assert!(fold(1e-30, below).is_some());
+        assert!(fold(-1.0, below).is_none(), "0 is not less than -1");
+        let at_least = |b: &mut FunctionBuilder, acc, term| {
+            let (is_at_least, one) = (b.le(acc, term), b.constant(1.0));
+            let kept = b.select(is_at_least, one, acc);
+            b.max(term, kept)
+        };
+        assert!(fold(1e-30, at_least).is_some());
+        assert!(fold(-1.0, at_least).is_none());
+    }
+
+    #[test]
+    fn the_least_of_what_may_be_negative_is_unknown() {
+        let sum = |b: &mut FunctionBuilder, acc, term| {
+            let least = b.min(acc, term);
+            b.add(acc, least)
+        };
+        assert!(fold(-1.0, sum).is_none(), "the sum of -1 and -1");
+        let turned = |b: &mut FunctionBuilder, acc, term| {
+            let least = b.min(term, acc);
+            b.add(acc, least)
+        };
+        assert!(fold(-1.0, turned).is_none());
+    }
+
+    /// A fold whose quotient is by one of two numbers; which of them, the accumulator decides.
+    fn by_one_of(numbers: [f32; 2]) -> Option<Gate> {
+        fold(0.0, |b, acc, term| {
+            let [first, second] = numbers.map(|number| b.constant(number));
+            let (one, number) = (b.constant(1.0), b.column(Table::new(0), 0));
+            let is_less = b.lt(number, one);
+            let chosen = b.select(is_less, first, second);
+            let quotient = b.div(term, chosen);
+            b.add(acc, quotient)
+        })
+    }
+
+    #[test]
+    fn what_holds_of_both_branches_holds_of_a_choice() {
+        assert!(by_one_of([2.0, 3.0]).is_some());
+        assert!(by_one_of([2.0, 0.0]).is_none(), "0 / 0");
+        assert!(by_one_of([0.0, 2.0]).is_none());
+    }
+
+    /// A sum of products and a constant, as an accumulator that a row may leave as it is.
+    fn of_fma(addend: f32) -> Option<Gate> {
+        fold(1.0, |b, acc, term| {
+            let (one, addend) = (b.constant(1.0), b.constant(addend));
+            let (sum, product) = (b.add(acc, term), b.fma(acc, acc, addend));
+            let is_inside = b.lt(one, term);
+            b.select(is_inside, product, sum)
+        })
+    }
+
+    #[test]
+    fn a_sum_with_a_product_is_never_minus_zero_if_the_addend_is_large() {
+        assert!(of_fma(1.0).is_some());
+        assert!(of_fma(-LARGE).is_some());
+        assert!(of_fma(1e-20).is_none(), "a product of about -1e-20 may leave a -0");
+    }
+
+    /// Whether a sum of one clamped number has a gate: with steps before it that it does not need, and after.
+    fn spares(before: usize, after: usize) -> bool {
         let mut b = FunctionBuilder::new("fold", &["x"]);
-        let schema = Schema { name: "t".to_owned(), columns: Vec::new(), parent: None, slots: Vec::new() };
+        let schema =
+            Schema { name: "t".to_owned(), columns: vec!["c".to_owned()], parent: None, slots: Vec::new() };
         let table = b.table(schema);
         let (x, zero) = (b.input(0), b.constant(0.0));
         let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
-        let near = b.max(x, zero);
-        let next = b.add(acc, near);
+        let column = b.column(table, 0);
+        let other = (0..before).fold(column, |value, _| b.add(value, x));
+        let near = b.max(column, zero);
+        let term = (0..after).fold(near, |value, _| b.mul(value, near));
+        let next = b.add(acc, term);
+        // What the gate does not need is needed by the row.
+        let is_high = b.lt(column, other);
+        let next = b.select(is_high, acc, next);
         let out = b.end_fold(&[next])[0];
         let function = b.finish(&[("out".to_owned(), out)]);
-        assert!(gates(&function).values().all(Option::is_none));
+        gates(&function).values().any(Option::is_some)
+    }
+
+    #[test]
+    fn what_spares_little_is_no_gate() {
+        // The sum, the comparison and the choice are three steps more.
+        for before in [0, 1, 5] {
+            let after = LEAST_SPARED - before - 3;
+            assert!(spares(before, after), "{before} steps before and {after} after");
+            assert!(!spares(before, after - 1), "{before} steps before and {} after", after - 1);
+        }
     }
 }
