@@ -8,8 +8,9 @@ use jbt_ir::{
     Domain, FoldKind, Function, FunctionBuilder, Origin, Rows, Rule, Schema, Tables, Verified, verify,
 };
 
-/// The union of rows, each of which is the intersection of as many half-spaces as a row has numbers.
-fn union(columns: usize) -> Function {
+/// The union of rows, each of which is the intersection of as many half-spaces as a row has numbers. The field
+/// of the row that wins is chosen by a `select`, or is a `max`.
+fn union(columns: usize, by_select: bool) -> Function {
     let mut b = FunctionBuilder::new("union", &["x", "y", "z"]);
     let names = (0..columns).map(|column| format!("c{column}")).collect();
     let schema = Schema { name: "row".into(), columns: names, parent: None, slots: vec![] };
@@ -24,7 +25,12 @@ fn union(columns: usize) -> Function {
         let side = if column % 2 == 0 { b.sub(number, x) } else { b.add(number, x) };
         within = b.min(within, side);
     }
-    let next = b.max(united, within);
+    let next = if by_select {
+        let takes = b.lt(united, within);
+        b.select(takes, within, united)
+    } else {
+        b.max(within, united)
+    };
     b.set_origin(Origin::SHARED);
     let union = b.end_fold(&[next])[0];
     b.finish(&[("field".to_owned(), union)])
@@ -52,33 +58,33 @@ fn signatures(function: &Verified, rows: &[[f32; 4]], points: &[f32]) -> Vec<(f3
 fn each_side_of_each_row_has_a_signature() {
     // Segments [-c1, c0] and [-c3, c2] of the x-axis: both must hold.
     let [left, right] = [[-1.0, 3.0, 9.0, 9.0], [3.0, -1.0, 9.0, 9.0]];
-    let plain = decisions(&union(4)).expect("it has edges");
-    let function = verify(run_pipeline(plain, PIPELINE, &mut |_, _| {})).expect("it keeps the rules");
     let points = [-2.75, -2.5, -1.5, -1.25, 1.25, 1.5, 2.5, 2.75];
-    let found = signatures(&function, &[left, right], &points);
-    for (at, &(value, signature)) in points.iter().zip(&found) {
-        assert_eq!(value, 1.0 - (at.abs() - 2.0).abs(), "at {at}");
-        assert!((1.0..2.0).contains(&signature), "at {at}: {signature}");
+    for by_select in [false, true] {
+        let plain = decisions(&union(4, by_select)).expect("it has edges");
+        let function = verify(run_pipeline(plain, PIPELINE, &mut |_, _| {})).expect("it keeps the rules");
+        let found = signatures(&function, &[left, right], &points);
+        for (at, &(value, signature)) in points.iter().zip(&found) {
+            assert_eq!(value, 1.0 - (at.abs() - 2.0).abs(), "at {at}");
+            assert!((1.0..2.0).contains(&signature), "at {at}: {signature}");
+        }
+        // Two points on each side have one signature, and sides have different ones.
+        for pair in found.chunks_exact(2) {
+            assert_eq!(pair[0].1, pair[1].1);
+        }
+        let sides: Vec<u32> = found.iter().step_by(2).map(|(_, signature)| signature.to_bits()).collect();
+        for (n, side) in sides.iter().enumerate() {
+            assert!(!sides[..n].contains(side), "sides {sides:?} of two rows");
+        }
+        assert_eq!(signatures(&function, &[right, left], &points), found, "rows the other way round");
+        let beside = [[0.0, -9.0, 1.0, 1.0], left, [0.5, -9.0, 1.0, 1.0], right];
+        assert_eq!(signatures(&function, &beside, &points), found, "with rows that are 0 there");
     }
-    // Two points on each side have one signature, and sides have different ones.
-    let is_same = |found: &[(f32, f32)]| -> Vec<bool> {
-        let each = |&(_, a): &(f32, f32)| found.iter().map(move |&(_, b)| a == b).collect::<Vec<bool>>();
-        found.iter().flat_map(each).collect()
-    };
-    let count = points.len();
-    let expected: Vec<bool> = (0..count * count).map(|n| n / count / 2 == n % count / 2).collect();
-    assert_eq!(is_same(&found), expected);
-    let turned = signatures(&function, &[right, left], &points);
-    assert_eq!(is_same(&turned), expected, "rows the other way round");
-    let nothing = [[0.0, -9.0, 1.0, 1.0], [0.5, -9.0, 1.0, 1.0]];
-    let beside = signatures(&function, &[nothing[0], left, nothing[1], right], &points);
-    assert_eq!(is_same(&beside), expected, "with rows that are 0 there");
 }
 
 #[test]
 fn code_grows_with_columns_and_marked_ops() {
     let added = |columns: usize| {
-        let function = union(columns);
+        let function = union(columns, false);
         let with = decisions(&function).expect("it has edges");
         run_pipeline(with, PIPELINE, &mut |_, _| {}).insts.len() - function.insts.len()
     };

@@ -273,13 +273,14 @@ impl State {
             return;
         }
         let takes = takes(d, extreme, best, operand.field, self.order.zip(order));
-        self.field[0] = match (self.order, order) {
-            (Some(so_far), Some(order)) => {
-                self.order = Some(d.select(takes, order, so_far));
-                d.select(takes, operand.field, best)
-            }
-            _ => extreme.step(d, best, operand.field),
+        let orders = self.order.zip(order);
+        self.order = orders.map_or(self.order, |(so_far, order)| Some(d.select(takes, order, so_far)));
+        let before = d.set_origin(Origin::CREASE);
+        self.field[0] = match orders {
+            Some(_) => d.select(takes, operand.field, best),
+            None => extreme.step(d, best, operand.field),
         };
+        d.set_origin(before);
         for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
             if let Some(share) = state.best {
                 let one = d.constant(1.0);

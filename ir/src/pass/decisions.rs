@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! min, max      the signature of the operand that wins; a marked one adds its number where the first one wins
-//! select        the same; a marked one adds its number on both sides
+//! select        the same of the one that is chosen
 //! abs, rounding a marked one adds its number where its operand is negative, or the whole number
 //! sum           onto an accumulator: the sum of the signatures of operands that are not 0
 //! other ops     the sum of the signatures of the operands
@@ -182,11 +182,10 @@ impl Tracing<'_> {
         number
     }
 
-    /// The number of a marked op, where it has this outcome.
-    fn number(&mut self, inst: &InstData, outcome: u32) -> Value {
+    /// The number of a marked op.
+    fn number(&mut self, inst: &InstData) -> Value {
         let place = inst.results[0].index() as u32;
-        let place = place.wrapping_mul(0x9e37_79b9).wrapping_add(outcome);
-        let mut number = self.builder.bits_constant(place);
+        let mut number = self.builder.bits_constant(place.wrapping_mul(0x9e37_79b9).wrapping_add(1));
         if let Some(&row) = self.rows.last() {
             number = self.builder.int_add(number, row);
         }
@@ -229,7 +228,7 @@ impl Tracing<'_> {
     fn winner(&mut self, inst: &InstData, first: Value, args: &[Traced], marked: bool) -> Option<Value> {
         let [mut a, b] = [args[0].signature, args[1].signature];
         if marked {
-            let number = self.number(inst, 1);
+            let number = self.number(inst);
             a = self.sum(a, Some(number));
         }
         self.either(first, [a, b])
@@ -247,23 +246,16 @@ impl Tracing<'_> {
                 let first = if op == Op::Max { self.builder.lt(b, a) } else { self.builder.lt(a, b) };
                 self.winner(inst, first, args, marked)
             }
-            Op::Select => {
-                let [mut a, mut b] = [args[1].signature, args[2].signature];
-                if marked {
-                    let numbers = [1, 2].map(|outcome| self.number(inst, outcome));
-                    [a, b] = [self.sum(a, Some(numbers[0])), self.sum(b, Some(numbers[1]))];
-                }
-                self.either(args[0].value, [a, b])
-            }
+            Op::Select => self.winner(inst, args[0].value, &args[1..], marked),
             Op::Abs if marked => {
                 let zero = self.builder.constant(0.0);
                 let negative = self.builder.lt(args[0].value, zero);
-                let number = self.number(inst, 1);
+                let number = self.number(inst);
                 let flipped = self.sum(args[0].signature, Some(number));
                 self.either(negative, [flipped, args[0].signature])
             }
             Op::Sub if marked => {
-                let (number, shifted) = (self.number(inst, 1), self.builder.to_bits(args[0].value));
+                let (number, shifted) = (self.number(inst), self.builder.to_bits(args[0].value));
                 let outcome = self.builder.int_add(number, shifted);
                 Some(self.stirred(outcome, &STIRS))
             }
