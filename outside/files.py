@@ -61,6 +61,28 @@ for grid in grids:
 json.dump(told, open(folder + "/volume.json", "w"))
 """
 
+# The same of a level set of a ball around (10, 0, 0), and what a program for level sets makes of it.
+LEVELS = """
+import collections, json, sys, numpy, pyopenvdb
+folder = sys.argv[1]
+grids, _ = pyopenvdb.readAll(folder + "/surface.vdb")
+grids = {grid.name: grid for grid in grids}
+surface = grids["surface"]
+at = lambda index: numpy.linalg.norm(numpy.array(surface.transform.indexToWorld(index)) - [10, 0, 0]) - 1
+off = [(abs(value.value - at(value.min)), abs(value.value)) for value in surface.citerOnValues()]
+accessor = surface.getConstAccessor()
+index = lambda place: tuple(round(x) for x in surface.transform.worldToIndex(place))
+sign = lambda place: float(numpy.sign(accessor.getValue(index(place))))
+points, quads = surface.convertToQuads()
+radii = numpy.linalg.norm(points - [10, 0, 0], axis=1)
+edges = collections.Counter(tuple(sorted(edge)) for quad in quads.tolist() for edge in zip(quad, quad[1:] + quad[:1]))
+told = {"class": surface.gridClass, "names": sorted(grids), "background": surface.background, "active": surface.activeVoxelCount(),
+        "colors": grids["color"].activeVoxelCount(), "worst": max(d for d, _ in off), "near": max(d for d, v in off if v < 0.005),
+        "signs": [sign((10, 0, 0)), sign((11.1, 0, 0)), sign((100, 0, 0))], "quads": len(quads),
+        "low": float(radii.min()), "high": float(radii.max()), "open": sum(count != 2 for count in edges.values())}
+json.dump(told, open(folder + "/surface.json", "w"))
+"""
+
 PARTICLES = 20_000
 SEED = 5
 
@@ -266,6 +288,27 @@ class Judge:
             self.check(bool(numpy.array_equal(read[inside], planes[inside])), "volume.vdb", f"{name} has other numbers")
             self.check(not read[~inside].any(), "volume.vdb", f"{name} has numbers where the field is 0")
         print(f"volume.vdb: {int(inside.sum())} active points")
+        self.level_set(python)
+
+    def level_set(self, python):
+        """A ball of radius 1, of which distances are known, and what pyopenvdb meshes of them."""
+        scene = self.folder / "ball.jbt"
+        scene.write_text("jbt 1 color (1 0.5 0.25) { point { at (10 0 0) surface_radius 1 } }\n", encoding="utf-8")
+        command = [self.jbt, "sample", scene, "-o", self.folder / "surface.vdb", "--level-set", "--query", "all", "--cell", "0.01"]
+        subprocess.run([str(word) for word in command], capture_output=True, check=True)
+        subprocess.run([python, "-c", LEVELS, str(self.folder)], check=True)
+        told = json.loads((self.folder / "surface.json").read_text())
+        self.check(told["class"] == "level set", "surface.vdb", f"the class is {told['class']}")
+        self.check(told["names"] == ["color", "surface"], "surface.vdb", f"grids {told['names']}")
+        self.near([told["background"]], [0.03], 1e-8, "surface.vdb", "background")
+        # Exact at the surface; at three cells the falloff's second derivative has its say.
+        self.check(told["near"] < 2e-5, "surface.vdb", f"distances within half a cell are off by {told['near']}")
+        self.check(told["worst"] < 2e-3, "surface.vdb", f"distances are off by {told['worst']}")
+        self.check(told["signs"] == [-1.0, 1.0, 1.0], "surface.vdb", f"signs {told['signs']} in the middle and outside")
+        self.check(told["active"] > 50_000 and told["colors"] == told["active"], "surface.vdb", f"{told['active']}, {told['colors']} active")
+        self.check(abs(told["low"] - 1) < 1e-4 and abs(told["high"] - 1) < 1e-4, "surface.vdb", f"radii of its mesh from {told['low']} to {told['high']}")
+        self.check(told["open"] == 0, "surface.vdb", f"{told['open']} edges of its mesh have not two sides")
+        print(f"surface.vdb: {told['active']} active points, distances off by {told['worst']:.1e} at most, {told['quads']} quads")
 
     def other_ups(self, scene):
         for form in FORMATS:

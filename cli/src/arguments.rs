@@ -282,6 +282,9 @@ pub struct SampleArguments {
     /// The answers wanted, and names of attribute groups if not all are: field,color
     #[arg(long, default_value_t = Query::FIELD.into(), value_parser = WantedParser)]
     pub query: WantedAnswers,
+    /// Of a .vdb: distances from the surface, up to three cells to both sides, in place of the field
+    #[arg(long)]
+    pub level_set: bool,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use jbt::mesh::Lattice;
-use jbt::sample::{Sampler, VdbVolume, Wanted, write_npy, write_vdb};
-use jbt::{Box3, Counters};
+use jbt::sample::{Sampler, VdbField, VdbVolume, Wanted, write_npy, write_vdb};
+use jbt::{AnswerKind, Box3, Counters};
 use serde_json::json;
 
 use crate::arguments::SampleArguments;
@@ -15,19 +15,30 @@ use crate::output::{Output, grouped};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
 
+/// What is said of distances that are none to the last digit.
+const FIRST_ORDER: &str = "distances of the level set are those of tangents, (field - iso) / |gradient|: exact at the \
+                           surface, and less so the farther off";
+
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "samples")?;
+    if arguments.level_set && destination.kind != ArrayKind::Vdb {
+        return Err(Failure::Usage("a level set is written as .vdb".to_owned()));
+    }
     let settings = lattice::settings(&arguments.lattice)?;
-    let scene = LoadedScene::load(&arguments.scene)?;
+    let mut scene = LoadedScene::load(&arguments.scene)?;
+    if arguments.level_set {
+        scene.warnings.push(FIRST_ORDER.to_owned());
+    }
     scene.warn(quiet);
     arguments.query.check_numbers()?;
     let tree = scene.check_for(&arguments.query)?;
     let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;
-    let sampler =
-        Sampler::new(&compiler, &tree, arguments.query.query).map_err(|error| scene.failure(&error))?;
+    let asked = arguments.query.query;
+    let query = if arguments.level_set { asked.and(AnswerKind::Gradient) } else { asked };
+    let sampler = Sampler::new(&compiler, &tree, query).map_err(|error| scene.failure(&error))?;
     let mut progress = ProgressLine::new("sampling", quiet);
     match destination.kind {
         ArrayKind::Npy => {
@@ -45,7 +56,9 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
             drop(progress);
             let evaluator = sampler.evaluator();
             let (origin, names) = (evaluator.origin().point(), evaluator.layout().names());
-            let volume = VdbVolume { lattice: &lattice, origin, names };
+            let iso = tree.iso() as f32;
+            let field = if arguments.level_set { VdbField::LevelSet { iso } } else { VdbField::Fog };
+            let volume = VdbVolume { lattice: &lattice, origin, names, field };
             let mut output = Output::open(&destination)?;
             write_vdb(volume, &blocks, &mut output).map_err(|error| output.failure(error))?;
             output.finish()?;

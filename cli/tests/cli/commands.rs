@@ -615,6 +615,12 @@ fn sample_writes_an_array() {
     assert_eq!(all.code(0).stdout_bytes().len(), 128 + 4 * 150 * 7);
     folder.jbt(&[&["sample", "ball.jbt", "-o", "a.vdb"][..], &lattice].concat()).code(0);
     assert!(folder.read("a.vdb").starts_with(b" BDV"));
+    let levels = [&["sample", "ball.jbt", "-o", "b.vdb", "--level-set"][..], &lattice].concat();
+    folder.jbt(&levels).code(0).says("distances of the level set are those of tangents");
+    let file = folder.read("b.vdb");
+    let has = |word: &str| file.windows(word.len()).any(|bytes| bytes == word.as_bytes());
+    assert!(has("level set") && has("surface") && !has("density") && !has("gradient"));
+    folder.jbt(&["sample", "ball.jbt", "-o", "a.npy", "--level-set"]).code(2).says("written as .vdb");
     let huge = ["sample", "ball.jbt", "-o", "b.npy", "--resolution", "5000"];
     folder.jbt(&huge).code(3).says("more than 1073741824 numbers");
     folder.jbt(&["sample", "ball.jbt", "-o", "b.npy", "--cell", "0"]).code(2);

@@ -119,7 +119,7 @@ fn compressed_arrays_are_read() {
     let array = "AQAAABgAAAAAAAAAEgAAAA==eJxjYEAGDfZAwgGIHAAJTwGA";
     let folder = Folder::new().with(
         "a.vtp",
-        &format!(
+        format!(
             "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\"><PolyData>
             <Piece NumberOfPoints=\"2\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">
             {array}</DataArray></Points></Piece></PolyData></VTKFile>"

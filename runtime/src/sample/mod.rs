@@ -10,13 +10,14 @@
 //! Coordinates are those of the [`Lattice`], so that the bits are those of any other way to ask at these
 //! points.
 
+mod band;
 mod block;
 mod npy;
 mod vdb;
 
 pub use block::Block;
 pub use npy::write_npy;
-pub use vdb::{VdbVolume, write_vdb};
+pub use vdb::{VdbField, VdbVolume, write_vdb};
 
 use crate::parallel::*;
 use jbt_model::diagnostic::Diagnostics;

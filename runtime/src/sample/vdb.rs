@@ -4,13 +4,15 @@
 //! root ─ nodes of 4096^3 ─ nodes of 128^3 ─ leaves of 8^3 points       a mask says which points are active
 //! ```
 //!
-//! A point is active where the field is not 0, and only active values are in the file. The field is the
-//! grid `density`, a fog; three planes of one name are a grid of vectors, as `color` and `gradient`; every
-//! other plane is a grid of its own name.
+//! Only active values are in the file. Of a *fog* a point is active where the field is not 0; the field is the
+//! grid `density`. Of a *level set* it is active within a [band](super::band) around the surface, where the
+//! grid `surface` has distances; the file says of every other point on which side it is. Three planes of one
+//! name are a grid of vectors, as `color` and `gradient`; every other plane is a grid of its own name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use super::band::{BandLeaf, band, width};
 use super::block::Block;
 use crate::mesh::Lattice;
 
@@ -20,13 +22,29 @@ const MAGIC: u64 = 0x5644_4220;
 const VERSIONS: [u32; 3] = [224, 10, 0];
 /// Of inactive values, which are all the background, nothing is kept.
 const ACTIVE_MASK: u32 = 2;
-/// Said in front of the values of a node: all inactive ones are the background.
+/// Said in front of the values of a node: all inactive ones are the background; or a mask follows, of those
+/// that are, and the others have its negative.
 const BACKGROUND: u8 = 0;
+const BACKGROUND_OR_NEGATIVE: u8 = 3;
 /// The binary logarithm of the points along a side of a leaf; then of children along a side of the nodes
 /// above.
-const LEAF: u32 = 3;
+pub(super) const LEAF: u32 = 3;
 const LOWER: u32 = 4;
 const UPPER: u32 = 5;
+
+/// What the field becomes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum VdbField {
+    /// A grid `density`: the field as it is.
+    Fog,
+    /// A grid `surface`: the distance from the surface, negative inside, up to three cells to both sides. The
+    /// planes have the field and its gradient, and the distance is what they tell of it: `(iso - field) /
+    /// |gradient|`, exact to first order in the distance.
+    LevelSet {
+        /// The value of the field at the surface.
+        iso: f32,
+    },
+}
 
 /// What is sampled where.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +55,31 @@ pub struct VdbVolume<'a> {
     pub origin: [f64; 3],
     /// The names of the planes, as the evaluator's layout has them.
     pub names: &'a [String],
+    /// What becomes of the field.
+    pub field: VdbField,
 }
 
-/// Writes blocks of samples, of which no two have a point in common. Points of no block are not active.
+/// Writes blocks of samples, of which no two have a point in common. Points of no block are not active, and
+/// outside.
 ///
 /// # Errors
-/// Those of the writer.
+/// Those of the writer; and `InvalidInput` if a level set is wanted and no planes have field and gradient.
 pub fn write_vdb(volume: VdbVolume<'_>, blocks: &[Block], writer: &mut dyn Write) -> io::Result<()> {
-    let grids = grids(volume.names);
+    let (grids, band) = match volume.field {
+        VdbField::Fog => (grids(volume.names), None),
+        VdbField::LevelSet { iso } => {
+            let planes = ["field", "gx", "gy", "gz"].map(|name| plane_of(volume.names, name));
+            let [Some(field), Some(x), Some(y), Some(z)] = planes else {
+                let problem = "a level set is made of the field and its gradient";
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+            };
+            let band = band(blocks, [field, x, y, z], iso, volume.lattice.spacing());
+            (grids(volume.names), Some(band))
+        }
+    };
+    let band = band.as_ref();
+    let is_kept = |grid: &VdbGrid| band.is_none() || grid.name != "gradient";
+    let grids: Vec<VdbGrid> = grids.into_iter().filter(is_kept).collect();
     let mut head = Vec::new();
     head.extend_from_slice(&MAGIC.to_le_bytes());
     VERSIONS.iter().for_each(|version| head.extend_from_slice(&version.to_le_bytes()));
@@ -56,14 +91,45 @@ pub fn write_vdb(volume: VdbVolume<'_>, blocks: &[Block], writer: &mut dyn Write
     writer.write_all(&head)?;
     let mut place = head.len() as u64;
     for grid in &grids {
-        let bytes = grid.bytes(volume, blocks, place);
+        let bytes = match band {
+            Some(band) if grid.name == DENSITY => {
+                let surface = VdbGrid { name: "surface".to_owned(), ..grid.clone() };
+                let background = width(volume.lattice.spacing());
+                surface.bytes(volume, ("level set", background), &surface_leaves(band), place)
+            }
+            Some(band) => {
+                let is_active = |block: &Block, at: [usize; 3]| {
+                    let first = block.first();
+                    let index = [0, 1, 2].map(|axis| (first[axis] + at[axis]) as u32);
+                    let leaf = band.get(&index.map(|axis| axis >> LEAF));
+                    leaf.is_some_and(|leaf| has(&leaf.active, offset(index, LEAF)))
+                };
+                grid.bytes(volume, ("unknown", 0.0), &grid.leaves(blocks, is_active), place)
+            }
+            None => {
+                let is_active = |block: &Block, at: [usize; 3]| match grid.field {
+                    Some(field) => block.get(field, at) != 0.0,
+                    None => grid.planes.iter().any(|&plane| block.get(plane, at) != 0.0),
+                };
+                let class = if grid.name == DENSITY { "fog volume" } else { "unknown" };
+                grid.bytes(volume, (class, 0.0), &grid.leaves(blocks, is_active), place)
+            }
+        };
         writer.write_all(&bytes)?;
         place += bytes.len() as u64;
     }
     Ok(())
 }
 
+/// The grid of the field, of a fog.
+const DENSITY: &str = "density";
+
+fn plane_of(names: &[String], name: &str) -> Option<usize> {
+    names.iter().position(|known| known == name)
+}
+
 /// A grid: its name, and its planes, one or three.
+#[derive(Clone)]
 struct VdbGrid {
     name: String,
     planes: Vec<usize>,
@@ -73,9 +139,9 @@ struct VdbGrid {
 
 /// The grids of planes with these names.
 fn grids(names: &[String]) -> Vec<VdbGrid> {
-    let field = names.iter().position(|name| name == "field");
+    let field = plane_of(names, "field");
     let stem = |name: &str| match name {
-        "field" => "density".to_owned(),
+        "field" => DENSITY.to_owned(),
         "gx" | "gy" | "gz" => "gradient".to_owned(),
         name => name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned(),
     };
@@ -100,12 +166,41 @@ fn grids(names: &[String]) -> Vec<VdbGrid> {
 struct VdbLeaf {
     mask: [u64; 8],
     values: Vec<f32>,
+    /// Where others have the negative of the background.
+    inside: [u64; 8],
+}
+
+impl VdbLeaf {
+    /// Whether all of it is inside, and nothing is active: then it is no leaf but a tile.
+    fn is_tile(&self) -> bool {
+        self.mask == [0; 8] && self.inside == [u64::MAX; 8]
+    }
+}
+
+/// Whether a mask has a point.
+pub(super) fn has(mask: &[u64; 8], offset: usize) -> bool {
+    mask[offset >> 6] >> (offset & 63) & 1 == 1
+}
+
+/// The leaves of the band, in the order of the file.
+fn surface_leaves(band: &BTreeMap<[u32; 3], BandLeaf>) -> BTreeMap<VdbPlace, VdbLeaf> {
+    let leaf = |(place, leaf): (&[u32; 3], &BandLeaf)| {
+        let BandLeaf { active, inside, distances } = leaf;
+        (VdbPlace::of(*place), VdbLeaf { mask: *active, values: distances.clone(), inside: *inside })
+    };
+    band.iter().map(leaf).collect()
 }
 
 impl VdbGrid {
-    /// The whole grid, which begins at this place of the file.
-    fn bytes(&self, volume: VdbVolume<'_>, blocks: &[Block], place: u64) -> Vec<u8> {
-        let (width, leaves) = (self.planes.len(), self.leaves(blocks));
+    /// The whole grid, of a class and with a background, which begins at this place of the file.
+    fn bytes(
+        &self,
+        volume: VdbVolume<'_>,
+        (class, background): (&str, f32),
+        leaves: &BTreeMap<VdbPlace, VdbLeaf>,
+        place: u64,
+    ) -> Vec<u8> {
+        let width = self.planes.len();
         let mut bytes = Vec::new();
         push_text(&mut bytes, &self.name);
         push_text(&mut bytes, if width == 1 { "Tree_float_5_4_3" } else { "Tree_vec3s_5_4_3" });
@@ -115,15 +210,19 @@ impl VdbGrid {
         bytes.extend_from_slice(&[0; 24]);
         let start = here(&bytes);
         push_word(&mut bytes, ACTIVE_MASK);
-        let class = if self.name == "density" { "fog volume" } else { "unknown" };
         push_meta(&mut bytes, &[("class", class), ("name", &self.name)]);
         push_transform(&mut bytes, volume);
-        self.push_topology(&mut bytes, &leaves);
+        self.push_topology(&mut bytes, background, leaves);
         let values = here(&bytes);
-        for leaf in leaves.values() {
+        for leaf in leaves.values().filter(|leaf| !leaf.is_tile()) {
             leaf.mask.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
-            bytes.push(BACKGROUND);
-            let active = (0..512).filter(|&offset| leaf.mask[offset >> 6] >> (offset & 63) & 1 == 1);
+            if leaf.inside == [0; 8] {
+                bytes.push(BACKGROUND);
+            } else {
+                bytes.push(BACKGROUND_OR_NEGATIVE);
+                leaf.inside.iter().for_each(|word| bytes.extend_from_slice(&(!word).to_le_bytes()));
+            }
+            let active = (0..512).filter(|&offset| has(&leaf.mask, offset));
             for value in active.flat_map(|offset| &leaf.values[offset * width..(offset + 1) * width]) {
                 bytes.extend_from_slice(&value.to_le_bytes());
             }
@@ -136,28 +235,30 @@ impl VdbGrid {
     }
 
     /// The leaves with active points, in the order of the file.
-    fn leaves(&self, blocks: &[Block]) -> BTreeMap<VdbPlace, VdbLeaf> {
+    fn leaves(
+        &self,
+        blocks: &[Block],
+        is_active: impl Fn(&Block, [usize; 3]) -> bool,
+    ) -> BTreeMap<VdbPlace, VdbLeaf> {
         let width = self.planes.len();
         let mut leaves: BTreeMap<VdbPlace, VdbLeaf> = BTreeMap::new();
         for block in blocks {
             let (first, points) = (block.first(), block.points());
-            let is_active = |at| match self.field {
-                Some(field) => block.get(field, at) != 0.0,
-                None => self.planes.iter().any(|&plane| block.get(plane, at) != 0.0),
-            };
-            if block.is_constant() && !is_active([0; 3]) {
+            // Where all answers are the same, the surface is not.
+            if block.is_constant() && !is_active(block, [0; 3]) {
                 continue;
             }
             for z in 0..points[2] {
                 for y in 0..points[1] {
                     for x in 0..points[0] {
-                        if !is_active([x, y, z]) {
+                        if !is_active(block, [x, y, z]) {
                             continue;
                         }
                         let at = [first[0] + x, first[1] + y, first[2] + z];
-                        let leaf = leaves
-                            .entry(VdbPlace::of(at.map(|at| at as u32 >> LEAF)))
-                            .or_insert_with(|| VdbLeaf { mask: [0; 8], values: vec![0.0; 512 * width] });
+                        let leaf =
+                            leaves.entry(VdbPlace::of(at.map(|at| at as u32 >> LEAF))).or_insert_with(|| {
+                                VdbLeaf { mask: [0; 8], values: vec![0.0; 512 * width], inside: [0; 8] }
+                            });
                         let offset = offset(at.map(|at| at as u32), LEAF);
                         leaf.mask[offset >> 6] |= 1 << (offset & 63);
                         for (value, &plane) in leaf.values[offset * width..].iter_mut().zip(&self.planes) {
@@ -171,12 +272,12 @@ impl VdbGrid {
     }
 
     /// The tree without the values of its leaves.
-    fn push_topology(&self, bytes: &mut Vec<u8>, leaves: &BTreeMap<VdbPlace, VdbLeaf>) {
+    fn push_topology(&self, bytes: &mut Vec<u8>, background: f32, leaves: &BTreeMap<VdbPlace, VdbLeaf>) {
         let places: Vec<VdbPlace> = leaves.keys().copied().collect();
         let uppers: Vec<&[VdbPlace]> = places.chunk_by(|a, b| a.upper == b.upper).collect();
         // One buffer; the background; tiles, and nodes.
         push_word(bytes, 1);
-        self.planes.iter().for_each(|_| bytes.extend_from_slice(&0.0f32.to_le_bytes()));
+        self.planes.iter().for_each(|_| bytes.extend_from_slice(&background.to_le_bytes()));
         push_word(bytes, 0);
         push_word(bytes, uppers.len() as u32);
         for upper in uppers {
@@ -184,10 +285,18 @@ impl VdbGrid {
                 push_word(bytes, axis << (LEAF + LOWER + UPPER));
             }
             let lowers: Vec<&[VdbPlace]> = upper.chunk_by(|a, b| a.lower == b.lower).collect();
-            push_node(bytes, UPPER, lowers.iter().map(|lower| lower[0].lower));
+            let is_tile = |lower: &[VdbPlace]| {
+                lower.len() == 1 << (3 * LOWER) && lower.iter().all(|place| leaves[place].is_tile())
+            };
+            let (tiles, lowers): (Vec<_>, Vec<_>) = lowers.into_iter().partition(|lower| is_tile(lower));
+            let place = |lower: &&[VdbPlace]| lower[0].lower;
+            push_node(bytes, UPPER, lowers.iter().map(place), tiles.iter().map(place));
             for lower in lowers {
-                push_node(bytes, LOWER, lower.iter().map(|place| place.leaf));
-                for place in lower {
+                let (tiles, places): (Vec<&VdbPlace>, Vec<_>) =
+                    lower.iter().partition(|place| leaves[place].is_tile());
+                let place = |place: &&VdbPlace| place.leaf;
+                push_node(bytes, LOWER, places.iter().map(place), tiles.iter().map(place));
+                for place in places {
                     leaves[place].mask.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
                 }
             }
@@ -217,21 +326,36 @@ impl VdbPlace {
 }
 
 /// The place of a child in a node: z is fastest.
-fn offset([x, y, z]: [u32; 3], side: u32) -> usize {
+pub(super) fn offset([x, y, z]: [u32; 3], side: u32) -> usize {
     let part = |axis: u32| (axis & ((1 << side) - 1)) as usize;
     part(x) << (2 * side) | part(y) << side | part(z)
 }
 
 /// A node with children at these places: their mask, the mask of active tiles, of which there are none, and
-/// no values.
-fn push_node(bytes: &mut Vec<u8>, side: u32, children: impl Iterator<Item = usize>) {
+/// which inactive ones have the negative of the background.
+fn push_node(
+    bytes: &mut Vec<u8>,
+    side: u32,
+    children: impl Iterator<Item = usize>,
+    inside: impl Iterator<Item = usize>,
+) {
     let size = (1 << (3 * side)) / 8;
     let start = bytes.len();
     bytes.resize(start + 2 * size, 0);
     for child in children {
         bytes[start + child / 8] |= 1 << (child % 8);
     }
-    bytes.push(BACKGROUND);
+    let mut inside = inside.peekable();
+    if inside.peek().is_none() {
+        bytes.push(BACKGROUND);
+        return;
+    }
+    bytes.push(BACKGROUND_OR_NEGATIVE);
+    let start = bytes.len();
+    bytes.resize(start + size, 0xff);
+    for tile in inside {
+        bytes[start + tile / 8] &= !(1 << (tile % 8));
+    }
 }
 
 /// From indices to the world: the spacing and the place of the first point.
@@ -286,7 +410,8 @@ mod tests {
         // The point (130, 9, 2) is in the second node of 128^3 along x, and in its leaf (0, 1, 0).
         let block = Block::new([[130, 131], [9, 10], [2, 3]], vec![vec![0.75]]);
         let names = ["field".to_owned()];
-        let volume = VdbVolume { lattice: &lattice, origin: [1e5, 0.0, 0.0], names: &names };
+        let volume =
+            VdbVolume { lattice: &lattice, origin: [1e5, 0.0, 0.0], names: &names, field: VdbField::Fog };
         let mut file = Vec::new();
         write_vdb(volume, &[block], &mut file).unwrap();
         assert_eq!(&file[..8], b" BDV\0\0\0\0");

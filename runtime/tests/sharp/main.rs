@@ -61,7 +61,7 @@ fn cubes(a: f64) -> Vec<(&'static str, String)> {
 /// Faces of three kinds, which are rows of three tables.
 fn half_spaces(a: f64) -> String {
     let face = |n: usize, more: &str| {
-        let (axis, side) = (n / 2, if n % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, side) = (n / 2, if n.is_multiple_of(2) { 1.0 } else { -1.0 });
         let [normal, at] = [side, side * (a - 0.1)].map(|along| {
             let mut vector = [0.0; 3];
             vector[axis] = along;
