@@ -301,9 +301,9 @@ class Judge:
         self.check(told["class"] == "level set", "surface.vdb", f"the class is {told['class']}")
         self.check(told["names"] == ["color", "surface"], "surface.vdb", f"grids {told['names']}")
         self.near([told["background"]], [0.03], 1e-8, "surface.vdb", "background")
-        # Exact at the surface; at three cells the falloff's second derivative has its say.
+        # Exact at the surface, and to first order beside it.
         self.check(told["near"] < 2e-5, "surface.vdb", f"distances within half a cell are off by {told['near']}")
-        self.check(told["worst"] < 2e-3, "surface.vdb", f"distances are off by {told['worst']}")
+        self.check(told["worst"] < 1e-4, "surface.vdb", f"distances are off by {told['worst']}")
         self.check(told["signs"] == [-1.0, 1.0, 1.0], "surface.vdb", f"signs {told['signs']} in the middle and outside")
         self.check(told["active"] > 50_000 and told["colors"] == told["active"], "surface.vdb", f"{told['active']}, {told['colors']} active")
         self.check(abs(told["low"] - 1) < 1e-4 and abs(told["high"] - 1) < 1e-4, "surface.vdb", f"radii of its mesh from {told['low']} to {told['high']}")
