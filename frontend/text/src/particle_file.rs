@@ -4,9 +4,11 @@
 //! the file something is wrong, and quotes nothing of it: whoever wrote the scene need not be one who may see
 //! the file.
 
+use super::files::NamedFile;
 use super::import::SceneFormat;
 use super::import::particles::ParticleOptions;
 use super::lex::Token;
+use super::program::known::ParticleFault;
 use super::state::Parser;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::report::clip;
@@ -24,21 +26,21 @@ impl Parser<'_> {
     ) -> Option<WrittenParticles> {
         let name = self.text(file).trim_matches('"');
         let found = self.named_file(name, file, "read")?;
-        let radius = has_radius.then_some(1.0);
-        let options = ParticleOptions { radius, columns, values, ..ParticleOptions::default() };
-        let format = SceneFormat::of(&found.path, &found.bytes).ok();
-        let Some(read) = format.and_then(|format| format.read_particles(&found.bytes, &options)) else {
-            let message = format!("`{}` is no file of particles", clip(&found.path));
-            self.report(|| Diagnostic::error(Some(file.span()), message));
-            return None;
-        };
+        let asked = (found.identity.clone(), columns, values, has_radius);
+        let known = self.program.particles.entry(asked);
+        let read = known.or_insert_with_key(|(_, columns, values, _)| {
+            let radius = has_radius.then_some(1.0);
+            let (columns, values) = (columns.clone(), values.clone());
+            read(&found, &ParticleOptions { radius, columns, values, ..ParticleOptions::default() })
+        });
         let mut written = match read {
-            Ok((model, _)) => {
-                let Written::Particles(particles) = model.root.node().written() else { return None };
-                (**particles).clone()
+            Ok(written) => written.clone(),
+            Err(ParticleFault::None) => {
+                let message = format!("`{}` is no file of particles", clip(&found.path));
+                self.report(|| Diagnostic::error(Some(file.span()), message));
+                return None;
             }
-            Err(errors) => {
-                let place = errors.first().map(|error| place(error, &found.bytes)).unwrap_or_default();
+            Err(ParticleFault::Unreadable(place)) => {
                 let message = format!("`{}` has no particles that can be read{place}", clip(&found.path));
                 self.report(|| {
                     Diagnostic::error(Some(file.span()), message)
@@ -57,6 +59,22 @@ impl Parser<'_> {
     pub(super) fn quoted_words(&self, quoted: Option<Token>) -> Vec<String> {
         let text = quoted.map_or("", |token| self.text(token).trim_matches('"'));
         text.split(',').map(|word| word.trim().to_owned()).filter(|word| !word.is_empty()).collect()
+    }
+}
+
+/// The particles of a file. A text may name it at many places, so it is read once.
+fn read(file: &NamedFile, options: &ParticleOptions) -> Result<WrittenParticles, ParticleFault> {
+    let format = SceneFormat::of(&file.path, &file.bytes).ok();
+    let read = format.and_then(|format| format.read_particles(&file.bytes, options));
+    match read.ok_or(ParticleFault::None)? {
+        Ok((model, _)) => match model.root.node().written() {
+            Written::Particles(particles) => Ok((**particles).clone()),
+            _ => Err(ParticleFault::None),
+        },
+        Err(errors) => {
+            let place = errors.first().map(|error| place(error, &file.bytes)).unwrap_or_default();
+            Err(ParticleFault::Unreadable(place))
+        }
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use jbt_model::particles::NumberArray;
 use jbt_model::walk::walk;
+use jbt_model::written::Written;
 use jbt_text::files::{FileRequest, Files, NamedFile, ResolveError, Resolver};
 use jbt_text::import::SceneFormat;
 use jbt_text::{Options, parse, print};
@@ -95,4 +97,31 @@ fn pov_scenes_include_files() {
     let warnings = with(text).unwrap().warnings.to_string();
     assert!(warnings.contains("s.inc") && !warnings.contains("root"), "{warnings}");
     assert!(with(b"#include \"c.inc\"").unwrap_err()[0].message.contains("deep"));
+}
+
+/// A file that is named often is read once: its arrays are shared, and so is what is wrong with it.
+#[test]
+fn a_file_is_read_once() {
+    let options = options(&[("a.csv", TABLE), ("secret.csv", SECRET)]);
+    let text = "jbt 1 sum { particles { file \"a.csv\" } particles { file \"a.csv\" strength 2 } \
+                particles { file \"a.csv\" radius 1 } }";
+    let model = parse(text.as_bytes(), &options).unwrap_or_else(|error| panic!("{error}"));
+    let places: Vec<*const f64> = model
+        .root
+        .node()
+        .children()
+        .iter()
+        .map(|child| match child.node().written() {
+            Written::Particles(particles) => match &particles.positions {
+                NumberArray::Double(numbers) => numbers.as_ptr(),
+                NumberArray::Single(_) => panic!("a table has numbers of 64 bits"),
+            },
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(places[0], places[1]);
+    assert_ne!(places[0], places[2], "a radius of the text is another way to read the file");
+    let one = "particles { file \"secret.csv\" radius 1 }";
+    let wrong = parse(format!("jbt 1 sum {{ {one} {one} }}").as_bytes(), &options).unwrap_err();
+    assert_eq!(wrong.iter().count(), 2, "{wrong}");
 }

@@ -15,7 +15,7 @@ use jbt_model::diagnostic::Span;
 use jbt_model::label::LabelCall;
 use jbt_model::number::Number;
 use jbt_model::tree::Tree;
-use jbt_model::written::Written;
+use jbt_model::written::{Written, WrittenParticles};
 
 /// The word for the number of a list's elements.
 pub(crate) const COUNT: &str = "count";
@@ -56,12 +56,25 @@ impl Value {
     }
 }
 
+/// A file, and how it is read: columns, arrays that become attributes, whether the text gives a radius.
+pub(crate) type ParticleKey = (String, Vec<String>, Vec<String>, bool);
+
+/// Why a file has no particles.
+pub(crate) enum ParticleFault {
+    /// It is of a format that has none.
+    None,
+    /// They cannot be read; with the place, in words.
+    Unreadable(String),
+}
+
 /// What a program has defined, and how much it may expand.
 pub(crate) struct TextProgram<'a> {
     pub(crate) texts: &'a Texts,
     pub(super) files: FileReader,
     /// Files that have been included, by their identity.
     pub(super) included: HashMap<String, Included>,
+    /// What files of particles have.
+    pub(crate) particles: HashMap<ParticleKey, Result<WrittenParticles, ParticleFault>>,
     /// Those that are being read, each in the one before it: identities and paths.
     pub(super) open: Vec<(String, String)>,
     pub(super) definitions: HashMap<&'a str, Rc<ProgramDefinition<'a>>>,
@@ -93,6 +106,7 @@ impl<'a> TextProgram<'a> {
             texts,
             files,
             included: HashMap::new(),
+            particles: HashMap::new(),
             open: Vec::new(),
             definitions: HashMap::new(),
             styles: HashMap::new(),
