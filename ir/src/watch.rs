@@ -22,8 +22,8 @@ use std::sync::Arc;
 use std::thread::LocalKey;
 use std::time::{Duration, Instant};
 
-/// A clock for somebody who looks at it often, and needs the time every few milliseconds: while looks follow each
-/// other quickly, most of them are left out. A look at the real one takes as long as a block of points.
+/// A clock for somebody who looks at it often, and needs the time every few milliseconds: while looks follow
+/// each other quickly, most of them are left out. A look at the real one takes as long as a block of points.
 #[derive(Debug)]
 pub struct SparseClock {
     /// Looks that are left out from now on, and those that were before the last one.

@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use super::block::Block;
-use super::vdb::{LEAF, has, offset};
+use super::leaf::{LEAF, LeafMask, has, offset};
 
 /// How far the band reaches to each side, in cells: as far as programs for level sets expect.
 const HALF_WIDTH: f64 = 3.0;
@@ -22,8 +22,8 @@ const SIDE: u32 = 1 << LEAF;
 /// distances at all if none is in the band.
 #[derive(Clone, Debug)]
 pub(super) struct BandLeaf {
-    pub(super) active: [u64; 8],
-    pub(super) inside: [u64; 8],
+    pub(super) active: LeafMask,
+    pub(super) inside: LeafMask,
     pub(super) distances: Vec<f32>,
 }
 

@@ -12,6 +12,7 @@
 
 mod band;
 mod block;
+mod leaf;
 mod npy;
 mod vdb;
 

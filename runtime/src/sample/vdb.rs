@@ -14,6 +14,7 @@ use std::io::{self, Write};
 
 use super::band::{BandLeaf, band, width};
 use super::block::Block;
+use super::leaf::{LEAF, LeafMask, has, offset};
 use crate::mesh::Lattice;
 
 /// " BDV", as a word of 64 bits.
@@ -26,9 +27,7 @@ const ACTIVE_MASK: u32 = 2;
 /// that are, and the others have its negative.
 const BACKGROUND: u8 = 0;
 const BACKGROUND_OR_NEGATIVE: u8 = 3;
-/// The binary logarithm of the points along a side of a leaf; then of children along a side of the nodes
-/// above.
-pub(super) const LEAF: u32 = 3;
+/// The binary logarithm of the children along a side of the nodes above leaves.
 const LOWER: u32 = 4;
 const UPPER: u32 = 5;
 
@@ -164,10 +163,10 @@ fn grids(names: &[String]) -> Vec<VdbGrid> {
 /// Points of a leaf: which are active, and the values of those, point by point.
 #[derive(Clone)]
 struct VdbLeaf {
-    mask: [u64; 8],
+    mask: LeafMask,
     values: Vec<f32>,
     /// Where others have the negative of the background.
-    inside: [u64; 8],
+    inside: LeafMask,
 }
 
 impl VdbLeaf {
@@ -175,11 +174,6 @@ impl VdbLeaf {
     fn is_tile(&self) -> bool {
         self.mask == [0; 8] && self.inside == [u64::MAX; 8]
     }
-}
-
-/// Whether a mask has a point.
-pub(super) fn has(mask: &[u64; 8], offset: usize) -> bool {
-    mask[offset >> 6] >> (offset & 63) & 1 == 1
 }
 
 /// The leaves of the band, in the order of the file.
@@ -323,12 +317,6 @@ impl VdbPlace {
             leaf: offset(leaf, LOWER),
         }
     }
-}
-
-/// The place of a child in a node: z is fastest.
-pub(super) fn offset([x, y, z]: [u32; 3], side: u32) -> usize {
-    let part = |axis: u32| (axis & ((1 << side) - 1)) as usize;
-    part(x) << (2 * side) | part(y) << side | part(z)
 }
 
 /// A node with children at these places: their mask, the mask of active tiles, of which there are none, and
