@@ -4,10 +4,10 @@
 //! root ─ nodes of 4096^3 ─ nodes of 128^3 ─ leaves of 8^3 points       a mask says which points are active
 //! ```
 //!
-//! Only active values are in the file. Of a *fog* a point is active where the field is not 0; the field is the
-//! grid `density`. Of a *level set* it is active within a [band](super::band) around the surface, where the
-//! grid `surface` has distances; the file says of every other point on which side it is. Three planes of one
-//! name are a grid of vectors, as `color` and `gradient`; every other plane is a grid of its own name.
+//! Only active values are in the file. Of a *fog* a point is active where the field is not 0; the field is
+//! the grid `density`. Of a *level set* it is active within a [band](super::band) around the surface, where
+//! the grid `surface` has distances; the file says of every other point on which side it is. Three planes of
+//! one name are a grid of vectors, as `color` and `gradient`; every other plane is a grid of its own name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
