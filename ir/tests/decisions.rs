@@ -8,8 +8,8 @@ use jbt_ir::{
     Domain, FoldKind, Function, FunctionBuilder, Origin, Rows, Rule, Schema, Tables, Verified, verify,
 };
 
-/// The union of rows, each of which is the intersection of as many half-spaces as a row has numbers. The field
-/// of the row that wins is chosen by a `select`, or is a `max`.
+/// The union of rows, each of which is the intersection of as many half-spaces as a row has numbers. The
+/// field of the row that wins is chosen by a `select`, or is a `max`.
 fn union(columns: usize, by_select: bool) -> Function {
     let mut b = FunctionBuilder::new("union", &["x", "y", "z"]);
     let names = (0..columns).map(|column| format!("c{column}")).collect();
