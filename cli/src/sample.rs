@@ -16,7 +16,7 @@ use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
 
 /// What is said of distances that are none to the last digit.
-const FIRST_ORDER: &str = "distances of the level set are those of tangents, (field - iso) / |gradient|: exact at the \
+const FIRST_ORDER: &str = "distances of the level set are those of tangents, (iso - field) / |gradient|: exact at the \
                            surface, and less so the farther off";
 
 /// Runs the command. `start` is when the process began, for the total time.

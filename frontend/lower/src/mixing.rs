@@ -265,22 +265,19 @@ impl State {
 
     /// Lets the operand win, where it does.
     fn win(&mut self, d: &mut FunctionBuilder, extreme: Extreme, operand: &Answer, order: Option<Value>) {
-        let best = self.field[0];
-        if self.order.is_none() && self.groups.is_empty() {
-            let before = d.set_origin(Origin::CREASE);
-            self.field[0] = extreme.step(d, best, operand.field);
-            d.set_origin(before);
-            return;
+        let (best, orders) = (self.field[0], self.order.zip(order));
+        let is_asked = orders.is_some() || !self.groups.is_empty();
+        let takes = is_asked.then(|| takes(d, extreme, best, operand.field, orders));
+        if let (Some(takes), Some((so_far, order))) = (takes, orders) {
+            self.order = Some(d.select(takes, order, so_far));
         }
-        let takes = takes(d, extreme, best, operand.field, self.order.zip(order));
-        let orders = self.order.zip(order);
-        self.order = orders.map_or(self.order, |(so_far, order)| Some(d.select(takes, order, so_far)));
         let before = d.set_origin(Origin::CREASE);
-        self.field[0] = match orders {
-            Some(_) => d.select(takes, operand.field, best),
-            None => extreme.step(d, best, operand.field),
+        self.field[0] = match (takes, orders) {
+            (Some(takes), Some(_)) => d.select(takes, operand.field, best),
+            _ => extreme.step(d, best, operand.field),
         };
         d.set_origin(before);
+        let Some(takes) = takes else { return };
         for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
             if let Some(share) = state.best {
                 let one = d.constant(1.0);

@@ -184,6 +184,7 @@ impl Tracing<'_> {
 
     /// The number of a marked op.
     fn number(&mut self, inst: &InstData) -> Value {
+        // No place has the number 0, which nothing has that decides.
         let place = inst.results[0].index() as u32;
         let mut number = self.builder.bits_constant(place.wrapping_mul(0x9e37_79b9).wrapping_add(1));
         if let Some(&row) = self.rows.last() {

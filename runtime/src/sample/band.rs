@@ -8,61 +8,30 @@
 //! The distance is that of the tangent: `(iso - field) / |gradient|`. Where the field jumps, or is level, it
 //! tells nothing; then neighbours on two sides are half a cell off the surface.
 
-use std::collections::BTreeMap;
-
 use super::block::Block;
-use super::leaf::{LEAF, LeafMask, has, offset};
+use super::leaf::{LEAF, VdbLeaf, VdbLeaves, VdbPlace, offset};
 
 /// How far the band reaches to each side, in cells: as far as programs for level sets expect.
 const HALF_WIDTH: f64 = 3.0;
 /// Points along a side of a leaf.
 const SIDE: u32 = 1 << LEAF;
 
-/// The points of a leaf of 8^3: which are in the band, which are inside, and the distances of the former; no
-/// distances at all if none is in the band.
-#[derive(Clone, Debug)]
-pub(super) struct BandLeaf {
-    pub(super) active: LeafMask,
-    pub(super) inside: LeafMask,
-    pub(super) distances: Vec<f32>,
-}
-
-impl BandLeaf {
-    const OUTSIDE: Self = Self { active: [0; 8], inside: [0; 8], distances: Vec::new() };
-
-    fn is_inside(&self, offset: usize) -> bool {
-        has(&self.inside, offset)
-    }
-
-    fn put(&mut self, offset: usize, distance: f32) {
-        self.active[offset >> 6] |= 1 << (offset & 63);
-        self.distances.resize(512, 0.0);
-        self.distances[offset] = distance;
-    }
-}
-
 /// How far the band reaches to each side, for cells of this size.
 pub(super) fn width(spacing: f64) -> f32 {
     (HALF_WIDTH * spacing) as f32
 }
 
-/// The leaves that are not outside altogether, by their indices. The planes are those of the field and of its
-/// gradient.
-pub(super) fn band(
-    blocks: &[Block],
-    [field, x, y, z]: [usize; 4],
-    iso: f32,
-    spacing: f64,
-) -> BTreeMap<[u32; 3], BandLeaf> {
+/// The leaves of a level set: points of the band are active, with their distances. The planes are those of
+/// the field and of its gradient.
+pub(super) fn band(blocks: &[Block], [field, x, y, z]: [usize; 4], iso: f32, spacing: f64) -> VdbLeaves {
     let width = width(spacing);
-    let mut band: BTreeMap<[u32; 3], BandLeaf> = BTreeMap::new();
+    let mut band = VdbLeaves::new();
     for block in blocks {
-        let (first, points) = (block.first(), block.points());
         let is_first_inside = block.get(field, [0; 3]) >= iso;
         if block.is_constant() && !is_first_inside {
             continue;
         }
-        for at in places(points) {
+        for at in block.places() {
             let value = block.get(field, at);
             let is_inside = value >= iso;
             let slope = [x, y, z].map(|plane| f64::from(block.get(plane, at)));
@@ -72,73 +41,65 @@ pub(super) fn band(
             if !is_inside && !is_near {
                 continue;
             }
-            let index = [0, 1, 2].map(|axis| (first[axis] + at[axis]) as u32);
-            let leaf = band.entry(index.map(|axis| axis >> LEAF)).or_insert(BandLeaf::OUTSIDE);
+            let index = block.index(at);
+            let leaf = band.entry(VdbPlace::around(index)).or_default();
             let offset = offset(index, LEAF);
-            leaf.inside[offset >> 6] |= u64::from(is_inside) << (offset & 63);
+            if is_inside {
+                leaf.inside.add(offset);
+            }
             if is_near {
-                leaf.put(offset, distance);
+                leaf.put(offset, &[distance]);
             }
         }
     }
-    meet(&mut band, (0.5 * spacing) as f32, blocks);
+    let half = (0.5 * spacing) as f32;
+    for (index, distance) in apart(&band, blocks, half) {
+        let (leaf, offset) = (band.entry(VdbPlace::around(index)).or_default(), offset(index, LEAF));
+        if !leaf.active.has(offset) {
+            leaf.put(offset, &[distance]);
+        }
+    }
     band
 }
 
-/// All offsets in a block, x fastest.
-fn places([x, y, z]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-    (0..x * y * z).map(move |n| [n % x, n / x % y, n / (x * y)])
-}
-
-/// Puts neighbours on two sides that are not in the band into it, so far from the surface.
-fn meet(band: &mut BTreeMap<[u32; 3], BandLeaf>, half: f32, blocks: &[Block]) {
+/// Neighbours on two sides, each so far from the surface.
+fn apart(band: &VdbLeaves, blocks: &[Block], half: f32) -> Vec<([u32; 3], f32)> {
     let ends = [0, 1, 2].map(|axis| {
         blocks.iter().map(|block| block.first()[axis] + block.points()[axis]).max().unwrap_or(0) as u32
     });
-    let mut more: Vec<([u32; 3], f32)> = Vec::new();
-    for (&place, leaf) in &*band {
-        let corner = place.map(|axis| axis << LEAF);
+    let is_full = |leaf: Option<&VdbLeaf>| leaf.is_some_and(|leaf| leaf.inside.is_full());
+    let mut found = Vec::new();
+    for (place, leaf) in band {
+        let corner = place.corner();
         let beside = |axis: usize, up: bool| {
-            let mut beside = place;
-            beside[axis] = if up { place[axis] + 1 } else { place[axis].wrapping_sub(1) };
-            band.get(&beside)
+            let mut beside = corner;
+            beside[axis] = if up { corner[axis] + SIDE } else { corner[axis].wrapping_sub(SIDE) };
+            band.get(&VdbPlace::around(beside))
         };
-        let is_full = |leaf: Option<&BandLeaf>| leaf.is_some_and(|leaf| leaf.inside == [u64::MAX; 8]);
         let around = [0, 1, 2].map(|axis| [false, true].map(|up| beside(axis, up)));
         if is_full(Some(leaf)) && around.iter().flatten().all(|leaf| is_full(*leaf)) {
             continue;
         }
-        for n in 0..512 {
+        for n in (0..SIDE.pow(3)).filter(|&n| leaf.inside.has(n as usize)) {
             let inner = [n >> (2 * LEAF), n >> LEAF & (SIDE - 1), n & (SIDE - 1)];
-            if !leaf.is_inside(n as usize) {
-                continue;
-            }
-            for axis in 0..3 {
-                for up in [false, true] {
-                    let mut index = [0, 1, 2].map(|axis| corner[axis] + inner[axis]);
-                    let here = index;
-                    index[axis] = if up { index[axis] + 1 } else { index[axis].wrapping_sub(1) };
-                    // Nobody knows what is beyond the lattice.
-                    if index[axis] >= ends[axis] {
-                        continue;
-                    }
-                    let is_same = index.map(|axis| axis >> LEAF) == place;
-                    let other = if is_same { Some(leaf) } else { around[axis][usize::from(up)] };
-                    if !other.is_some_and(|other| other.is_inside(offset(index, LEAF))) {
-                        more.push((here, -half));
-                        more.push((index, half));
-                    }
+            let here = [0, 1, 2].map(|axis| corner[axis] + inner[axis]);
+            for (axis, up) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, false), (axis, true)]) {
+                let mut index = here;
+                index[axis] = if up { index[axis] + 1 } else { index[axis].wrapping_sub(1) };
+                // Nobody knows what is beyond the lattice.
+                if index[axis] >= ends[axis] {
+                    continue;
+                }
+                let is_same = VdbPlace::around(index) == *place;
+                let other = if is_same { Some(leaf) } else { around[axis][usize::from(up)] };
+                if !other.is_some_and(|other| other.inside.has(offset(index, LEAF))) {
+                    found.push((here, -half));
+                    found.push((index, half));
                 }
             }
         }
     }
-    for (index, distance) in more {
-        let leaf = band.entry(index.map(|axis| axis >> LEAF)).or_insert(BandLeaf::OUTSIDE);
-        let offset = offset(index, LEAF);
-        if !has(&leaf.active, offset) {
-            leaf.put(offset, distance);
-        }
-    }
+    found
 }
 
 #[cfg(test)]
@@ -146,7 +107,7 @@ mod tests {
     use super::*;
 
     /// The leaves of a lattice of 40^3 points with spacing 0.5, sampled in blocks of 16^3.
-    fn band_of(field: impl Fn([f64; 3]) -> [f32; 4]) -> BTreeMap<[u32; 3], BandLeaf> {
+    fn band_of(field: impl Fn([f64; 3]) -> [f32; 4]) -> VdbLeaves {
         let starts = [0, 16, 32];
         let block = |x: u32, y: u32, z: u32| {
             let indices = [x, y, z].map(|first| [first, 40.min(first + 16)]);
@@ -179,28 +140,28 @@ mod tests {
         for n in 0..40_u32.pow(3) {
             let index = [n % 40, n / 40 % 40, n / 1600];
             let distance = from_centre(index.map(|index| 0.5 * f64::from(index))).1 - 7.0;
-            let (leaf, offset) = (found.get(&index.map(|axis| axis >> LEAF)), offset(index, LEAF));
-            assert_eq!(leaf.is_some_and(|leaf| leaf.is_inside(offset)), distance <= 0.0, "{index:?}");
-            let is_active = leaf.is_some_and(|leaf| has(&leaf.active, offset));
+            let (leaf, offset) = (found.get(&VdbPlace::around(index)), offset(index, LEAF));
+            assert_eq!(leaf.is_some_and(|leaf| leaf.inside.has(offset)), distance <= 0.0, "{index:?}");
+            let is_active = leaf.is_some_and(|leaf| leaf.active.has(offset));
             assert_eq!(is_active, distance.abs() < 1.5, "{index:?}: {distance}");
             if is_active {
-                let found = leaf.expect("it is active").distances[offset];
+                let found = leaf.expect("it is active").values[offset];
                 assert!((f64::from(found) - distance).abs() < 1e-5, "{index:?}: {found}, {distance}");
             }
             seen[if is_active { 2 } else { usize::from(distance < 0.0) }] += 1;
         }
         assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
-        assert!(found.values().any(|leaf| leaf.active == [0; 8] && leaf.inside == [u64::MAX; 8]));
+        assert!(found.values().any(VdbLeaf::is_tile));
     }
 
     #[test]
     fn a_jump_has_half_a_cell_to_both_sides() {
         let found = band_of(|at| [f32::from(u8::from(from_centre(at).1 < 7.0)), 0.0, 0.0, 0.0]);
-        let active: u32 = found.values().flat_map(|leaf| &leaf.active).map(|mask| mask.count_ones()).sum();
+        let active: u32 = found.values().flat_map(|leaf| leaf.active.0).map(u64::count_ones).sum();
         assert!(active > 1000, "{active}");
         for leaf in found.values() {
-            for n in (0..512).filter(|&n| has(&leaf.active, n)) {
-                assert_eq!(leaf.distances[n], if leaf.is_inside(n) { -0.25 } else { 0.25 });
+            for n in (0..512).filter(|&n| leaf.active.has(n)) {
+                assert_eq!(leaf.values[n], if leaf.inside.has(n) { -0.25 } else { 0.25 });
             }
         }
     }

@@ -47,6 +47,17 @@ impl Block {
         if plane.len() == 1 { plane[0] } else { plane[(z * ny + y) * nx + x] }
     }
 
+    /// How far its points are from the first one, x fastest.
+    pub(super) fn places(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [x, y, z] = self.points();
+        (0..z).flat_map(move |z| (0..y).flat_map(move |y| (0..x).map(move |x| [x, y, z])))
+    }
+
+    /// The lattice indices of the point that is so far from the first one.
+    pub(super) fn index(&self, at: [usize; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|axis| self.indices[axis][0] + at[axis] as u32)
+    }
+
     /// Copies its answers to where they stand in the planes of a whole lattice.
     pub(super) fn copy_to(&self, lattice: [usize; 3], dense: &mut [Vec<f32>]) {
         let ([x, y, z], [nx, ny, nz]) = (self.first(), self.points());

@@ -9,12 +9,11 @@
 //! the grid `surface` has distances; the file says of every other point on which side it is. Three planes of
 //! one name are a grid of vectors, as `color` and `gradient`; every other plane is a grid of its own name.
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use super::band::{BandLeaf, band, width};
+use super::band::{band, width};
 use super::block::Block;
-use super::leaf::{LEAF, LeafMask, has, offset};
+use super::leaf::{LEAF, LOWER, UPPER, VdbLeaf, VdbLeaves, VdbPlace, offset};
 use crate::mesh::Lattice;
 
 /// " BDV", as a word of 64 bits.
@@ -27,9 +26,6 @@ const ACTIVE_MASK: u32 = 2;
 /// that are, and the others have its negative.
 const BACKGROUND: u8 = 0;
 const BACKGROUND_OR_NEGATIVE: u8 = 3;
-/// The binary logarithm of the children along a side of the nodes above leaves.
-const LOWER: u32 = 4;
-const UPPER: u32 = 5;
 
 /// What the field becomes.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -94,17 +90,9 @@ pub fn write_vdb(volume: VdbVolume<'_>, blocks: &[Block], writer: &mut dyn Write
             Some(band) if grid.name == DENSITY => {
                 let surface = VdbGrid { name: "surface".to_owned(), ..grid.clone() };
                 let background = width(volume.lattice.spacing());
-                surface.bytes(volume, ("level set", background), &surface_leaves(band), place)
+                surface.bytes(volume, ("level set", background), band, place)
             }
-            Some(band) => {
-                let is_active = |block: &Block, at: [usize; 3]| {
-                    let first = block.first();
-                    let index = [0, 1, 2].map(|axis| (first[axis] + at[axis]) as u32);
-                    let leaf = band.get(&index.map(|axis| axis >> LEAF));
-                    leaf.is_some_and(|leaf| has(&leaf.active, offset(index, LEAF)))
-                };
-                grid.bytes(volume, ("unknown", 0.0), &grid.leaves(blocks, is_active), place)
-            }
+            Some(band) => grid.bytes(volume, ("unknown", 0.0), &grid.leaves_of(blocks, band), place),
             None => {
                 let is_active = |block: &Block, at: [usize; 3]| match grid.field {
                     Some(field) => block.get(field, at) != 0.0,
@@ -160,38 +148,13 @@ fn grids(names: &[String]) -> Vec<VdbGrid> {
     grids
 }
 
-/// Points of a leaf: which are active, and the values of those, point by point.
-#[derive(Clone)]
-struct VdbLeaf {
-    mask: LeafMask,
-    values: Vec<f32>,
-    /// Where others have the negative of the background.
-    inside: LeafMask,
-}
-
-impl VdbLeaf {
-    /// Whether all of it is inside, and nothing is active: then it is no leaf but a tile.
-    fn is_tile(&self) -> bool {
-        self.mask == [0; 8] && self.inside == [u64::MAX; 8]
-    }
-}
-
-/// The leaves of the band, in the order of the file.
-fn surface_leaves(band: &BTreeMap<[u32; 3], BandLeaf>) -> BTreeMap<VdbPlace, VdbLeaf> {
-    let leaf = |(place, leaf): (&[u32; 3], &BandLeaf)| {
-        let BandLeaf { active, inside, distances } = leaf;
-        (VdbPlace::of(*place), VdbLeaf { mask: *active, values: distances.clone(), inside: *inside })
-    };
-    band.iter().map(leaf).collect()
-}
-
 impl VdbGrid {
     /// The whole grid, of a class and with a background, which begins at this place of the file.
     fn bytes(
         &self,
         volume: VdbVolume<'_>,
         (class, background): (&str, f32),
-        leaves: &BTreeMap<VdbPlace, VdbLeaf>,
+        leaves: &VdbLeaves,
         place: u64,
     ) -> Vec<u8> {
         let width = self.planes.len();
@@ -209,14 +172,14 @@ impl VdbGrid {
         self.push_topology(&mut bytes, background, leaves);
         let values = here(&bytes);
         for leaf in leaves.values().filter(|leaf| !leaf.is_tile()) {
-            leaf.mask.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
-            if leaf.inside == [0; 8] {
+            leaf.active.0.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+            if leaf.inside.is_empty() {
                 bytes.push(BACKGROUND);
             } else {
                 bytes.push(BACKGROUND_OR_NEGATIVE);
-                leaf.inside.iter().for_each(|word| bytes.extend_from_slice(&(!word).to_le_bytes()));
+                leaf.inside.0.iter().for_each(|word| bytes.extend_from_slice(&(!word).to_le_bytes()));
             }
-            let active = (0..512).filter(|&offset| has(&leaf.mask, offset));
+            let active = (0..512).filter(|&offset| leaf.active.has(offset));
             for value in active.flat_map(|offset| &leaf.values[offset * width..(offset + 1) * width]) {
                 bytes.extend_from_slice(&value.to_le_bytes());
             }
@@ -228,45 +191,51 @@ impl VdbGrid {
         bytes
     }
 
-    /// The leaves with active points, in the order of the file.
-    fn leaves(
-        &self,
-        blocks: &[Block],
-        is_active: impl Fn(&Block, [usize; 3]) -> bool,
-    ) -> BTreeMap<VdbPlace, VdbLeaf> {
-        let width = self.planes.len();
-        let mut leaves: BTreeMap<VdbPlace, VdbLeaf> = BTreeMap::new();
+    /// The leaves with active points.
+    fn leaves(&self, blocks: &[Block], is_active: impl Fn(&Block, [usize; 3]) -> bool) -> VdbLeaves {
+        let mut leaves = VdbLeaves::new();
         for block in blocks {
-            let (first, points) = (block.first(), block.points());
-            // Where all answers are the same, the surface is not.
             if block.is_constant() && !is_active(block, [0; 3]) {
                 continue;
             }
-            for z in 0..points[2] {
-                for y in 0..points[1] {
-                    for x in 0..points[0] {
-                        if !is_active(block, [x, y, z]) {
-                            continue;
-                        }
-                        let at = [first[0] + x, first[1] + y, first[2] + z];
-                        let leaf =
-                            leaves.entry(VdbPlace::of(at.map(|at| at as u32 >> LEAF))).or_insert_with(|| {
-                                VdbLeaf { mask: [0; 8], values: vec![0.0; 512 * width], inside: [0; 8] }
-                            });
-                        let offset = offset(at.map(|at| at as u32), LEAF);
-                        leaf.mask[offset >> 6] |= 1 << (offset & 63);
-                        for (value, &plane) in leaf.values[offset * width..].iter_mut().zip(&self.planes) {
-                            *value = block.get(plane, [x, y, z]);
-                        }
-                    }
+            for at in block.places().filter(|&at| is_active(block, at)) {
+                self.put(leaves.entry(VdbPlace::around(block.index(at))).or_default(), block, at);
+            }
+        }
+        leaves
+    }
+
+    /// Leaves with the active points of those of another grid.
+    fn leaves_of(&self, blocks: &[Block], others: &VdbLeaves) -> VdbLeaves {
+        let mut leaves = VdbLeaves::new();
+        for block in blocks {
+            // Of neighbours along x eight are in one leaf.
+            let mut last = None;
+            for at in block.places() {
+                let (index, place) = (block.index(at), VdbPlace::around(block.index(at)));
+                let other = match last {
+                    Some((known, other)) if known == place => other,
+                    _ => last.insert((place, others.get(&place))).1,
+                };
+                if other.is_some_and(|other| other.active.has(offset(index, LEAF))) {
+                    self.put(leaves.entry(place).or_default(), block, at);
                 }
             }
         }
         leaves
     }
 
+    /// Makes a point of a block active in its leaf.
+    fn put(&self, leaf: &mut VdbLeaf, block: &Block, at: [usize; 3]) {
+        let mut values = [0.0; 3];
+        for (value, &plane) in values.iter_mut().zip(&self.planes) {
+            *value = block.get(plane, at);
+        }
+        leaf.put(offset(block.index(at), LEAF), &values[..self.planes.len()]);
+    }
+
     /// The tree without the values of its leaves.
-    fn push_topology(&self, bytes: &mut Vec<u8>, background: f32, leaves: &BTreeMap<VdbPlace, VdbLeaf>) {
+    fn push_topology(&self, bytes: &mut Vec<u8>, background: f32, leaves: &VdbLeaves) {
         let places: Vec<VdbPlace> = leaves.keys().copied().collect();
         let uppers: Vec<&[VdbPlace]> = places.chunk_by(|a, b| a.upper == b.upper).collect();
         // One buffer; the background; tiles, and nodes.
@@ -291,30 +260,13 @@ impl VdbGrid {
                 let place = |place: &&VdbPlace| place.leaf;
                 push_node(bytes, LOWER, places.iter().map(place), tiles.iter().map(place));
                 for place in places {
-                    leaves[place].mask.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+                    leaves[place]
+                        .active
+                        .0
+                        .iter()
+                        .for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
                 }
             }
-        }
-    }
-}
-
-/// Where a leaf is: the indices of its node of 4096^3, and its offsets in the nodes below. Its order is that
-/// of the file.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct VdbPlace {
-    upper: [u32; 3],
-    lower: usize,
-    leaf: usize,
-}
-
-impl VdbPlace {
-    /// The place of a leaf, by its indices.
-    fn of(leaf: [u32; 3]) -> Self {
-        let lower = leaf.map(|axis| axis >> LOWER);
-        Self {
-            upper: lower.map(|axis| axis >> UPPER),
-            lower: offset(lower, UPPER),
-            leaf: offset(leaf, LOWER),
         }
     }
 }

@@ -334,7 +334,6 @@ fn what_is_wrong_is_told() {
     }
 }
 
-/// Every beginning of a good file, and files with a byte changed, give an answer.
 /// What a file says besides what is read: a warning names it.
 #[test]
 fn nothing_is_left_out_silently() {
@@ -393,6 +392,7 @@ fn atoms_are_known_by_their_content() {
     }
 }
 
+/// Every beginning of a good file, and files with a byte changed, give an answer.
 #[test]
 fn no_file_is_too_wrong() {
     let files: Vec<(&str, Vec<u8>)> = vec![
