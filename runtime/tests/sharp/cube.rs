@@ -25,6 +25,8 @@ pub(crate) struct Found {
     pub(crate) worse: usize,
     /// The largest distance of a corner of the cube from a vertex.
     pub(crate) worst_corner: f64,
+    /// The number of corners with a vertex within 1e-2, and of those with more than one.
+    pub(crate) corners: [usize; 2],
     /// Triangles that look inwards.
     pub(crate) folded: usize,
 }
@@ -116,8 +118,11 @@ impl Cube {
                 [0, 1, 2].map(|axis| if corner >> axis & 1 == 1 { self.half } else { -self.half }),
             );
             let corner = self.inverse.inverse().transform_point3(corner);
-            let nearest = positions.iter().map(|p| p.distance(corner)).fold(f64::INFINITY, f64::min);
-            found.worst_corner = found.worst_corner.max(nearest / size);
+            let distances = positions.iter().map(|p| p.distance(corner) / size);
+            found.worst_corner = found.worst_corner.max(distances.clone().fold(f64::INFINITY, f64::min));
+            let near = distances.filter(|&distance| distance < 1e-2).count();
+            found.corners[0] += usize::from(near > 0);
+            found.corners[1] += usize::from(near > 1);
         }
         for triangle in &made.mesh.triangles {
             let [p, q, r] = triangle.map(|vertex| positions[vertex as usize]);

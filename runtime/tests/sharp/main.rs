@@ -124,6 +124,7 @@ fn turned_cubes_have_sharp_edges() {
     let mut random = fastrand::Rng::with_seed(11);
     for (name, text) in cubes(0.8) {
         let (mut cells, mut good, mut worst, mut folded, mut before) = (0, 0, 0.0_f64, 0, 0);
+        let mut corners = 0;
         for _ in 0..6 {
             let axis = [0; 3].map(|_| 2.0 * random.f64() - 1.0);
             let degrees = 180.0 * random.f64();
@@ -139,11 +140,16 @@ fn turned_cubes_have_sharp_edges() {
             let usual_folded = cube.judge(&usual, &usual).folded;
             assert!(found.folded <= usual_folded, "{name}: {found:?}, {usual_folded} folded before");
             before += usual_folded;
+            corners += found.corners[0];
+            assert_eq!(found.corners[1], 0, "{name}: {found:?}");
         }
         println!(
-            "{name}: {good} of {cells} feature cells, worst {worst:.4} cells, {folded} folded, {before} before"
+            "{name}: {good} of {cells} feature cells, worst {worst:.4} cells, {corners} of 48 corners, \
+             {folded} folded, {before} before"
         );
         assert!(cells > 1_000);
+        // The others are close to cells that the surface goes through twice, whose vertices stay.
+        assert!(corners >= 46, "{name}: {corners} corners");
         assert!(good as f64 >= 0.99 * cells as f64, "{name}: {good} of {cells}");
         assert!(worst < 0.5, "{name}: {worst}");
     }

@@ -39,10 +39,6 @@ pub(super) struct Sheet {
     pub(super) size: f32,
     /// The cell.
     pub(super) cell: Box3,
-    /// The number of the cell in its brick, in Morton order.
-    pub(super) number: u16,
-    /// Which corners of the cell are inside, a bit each.
-    pub(super) signs: u8,
 }
 
 impl Sheet {
@@ -76,8 +72,6 @@ impl Sheet {
             outward: [0.0; 3],
             size,
             cell: Box3::new(position(0), position(7)),
-            number: cell.number,
-            signs: cell.signs,
         };
         let steps = [1, bricks.stride(), bricks.stride().pow(2)];
         let mut edge = mask.trailing_zeros() as usize;
