@@ -41,6 +41,9 @@ impl LoadedScene {
         };
         let jbt::Scene { mut model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
+        if let Some(up) = arguments.options.scene_up {
+            model.orientation.up = up;
+        }
         if arguments.options.mirror {
             model.orientation.handed = model.orientation.handed.other();
         }

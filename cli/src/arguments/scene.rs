@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use jbt::import::particles::{ParticleForm, ParticleOptions};
 use jbt::text::files::Files;
-use jbt::{SceneFormat, text};
+use jbt::{ModelUp, SceneFormat, text};
 
 use super::words::positive;
 
@@ -30,6 +30,9 @@ pub struct SceneOptions {
     /// Take the axes of the scene for those of the other hand: pictures and meshes are mirrored
     #[arg(long)]
     pub mirror: bool,
+    /// Take this axis of the scene for the one that points up, for a file that does not say, as a table
+    #[arg(long, value_name = "y|z", value_parser = scene_up)]
+    pub scene_up: Option<ModelUp>,
     /// Parts of it.
     #[command(flatten)]
     pub parts: PartArguments,
@@ -94,6 +97,11 @@ impl SceneOptions {
             particles: ParticleOptions { radius, scale, form, anisotropic, columns, values, waters, frame },
         }
     }
+}
+
+/// The axis of a scene that points up.
+fn scene_up(word: &str) -> Result<ModelUp, String> {
+    ModelUp::ALL.into_iter().find(|up| up.name() == word).ok_or_else(|| "expected y or z".to_owned())
 }
 
 fn form(text: &str) -> Result<ParticleForm, String> {

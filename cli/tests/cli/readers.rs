@@ -99,6 +99,27 @@ fn a_mesh_is_upright_and_its_mirror_image_is_another() {
     assert_ne!(picture(&[]), picture(&["--mirror"]));
 }
 
+/// A table does not say which of its axes points up.
+#[test]
+fn a_table_stands_as_it_is_told_to() {
+    let folder = Folder::new().with("a.csv", "x,y,z\n0,0,0\n0,1,0\n");
+    let low_and_high = |words: &[&str]| {
+        let all = [&["mesh", "a.csv", "-o", "a.obj", "--radius", "0.4", "--resolution", "16", "-q"], words];
+        folder.jbt(&[&all.concat()[..], &["--force"]].concat()).code(0);
+        let text = std::fs::read_to_string(folder.path("a.obj")).unwrap();
+        let heights =
+            text.lines().filter_map(|line| line.strip_prefix("v ")?.split(' ').nth(1)?.parse().ok());
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y: f64| [low.min(y), high.max(y)])
+    };
+    assert!(low_and_high(&[])[1] < 0.5);
+    let [low, high] = low_and_high(&["--scene-up", "y"]);
+    assert!(low > -0.5 && high > 1.3, "{low} {high}");
+    folder.jbt(&["convert", "a.csv", "-o", "a.jbt", "--radius", "0.4", "--scene-up", "y"]).code(0);
+    let text = std::fs::read_to_string(folder.path("a.jbt")).unwrap();
+    assert!(text.contains("\norientation up y"), "{text}");
+    folder.jbt(&["check", "a.csv", "--scene-up", "x"]).code(2).says("expected y or z");
+}
+
 #[test]
 fn errors_of_files_have_places() {
     let folder = Folder::new()

@@ -7,7 +7,7 @@
 //! Commands, help texts, messages and the choice of a reader derive from the rows.
 
 use super::imported::{Imported, ReadModel};
-use super::particles::{MAX_PARTICLE_BYTES, ParticleOptions};
+use super::particles::{MAX_PARTICLE_BYTES, ParticleOptions, ParticleUse};
 use crate::Options;
 use jbt_ir::limits::MAX_SCENE_BYTES;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics};
@@ -28,6 +28,8 @@ pub(crate) struct SceneFormatRow {
     pub(crate) has_objects: bool,
     /// Its files hold particles or atoms, of which options say more.
     pub(crate) has_particles: bool,
+    /// The options that its files have a use for, of those that not all particles have.
+    pub(crate) uses: &'static [ParticleUse],
     /// The most bytes that are read of a file.
     pub(crate) max_bytes: usize,
     /// The model of a file of at most that many bytes.
@@ -58,6 +60,7 @@ impl SceneFormatRow {
             has_parameters: false,
             has_objects: false,
             has_particles: false,
+            uses: &[],
             max_bytes: MAX_SCENE_BYTES,
             read: SceneReader::Scene(read),
         }
@@ -73,7 +76,7 @@ impl SceneFormatRow {
     /// Particles or atoms.
     pub(crate) const fn of_particles(
         extensions: &'static [&'static str],
-        text: &'static str,
+        (text, uses): (&'static str, &'static [ParticleUse]),
         recognizes: fn(&[u8]) -> bool,
         read: fn(&[u8], &ParticleOptions) -> ReadModel,
     ) -> Self {
@@ -84,6 +87,7 @@ impl SceneFormatRow {
             has_parameters: false,
             has_objects: false,
             has_particles: true,
+            uses,
             max_bytes: MAX_PARTICLE_BYTES,
             read: SceneReader::Particles(read),
         }
@@ -243,6 +247,7 @@ impl SceneFormat {
             _ if options.particles.is_set() && !row.has_particles => {
                 "no particles for options to be about".to_owned()
             }
+            _ if let Some(what) = options.particles.useless(row.uses) => what.to_owned(),
             _ => return row.read(bytes, options).map_err(|error| error.named(name)),
         };
         let message = format!("{name} is {}: it has {refused}", row.text);
@@ -308,6 +313,22 @@ mod tests {
         assert!(read(&parameter).contains("a.vm is a program of instructions: it has no parameter `r`"));
         let object = Options { object: Some("ball".to_owned()), ..Options::default() };
         assert!(read(&object).contains("it has no objects to choose `ball` from"));
+        let particles = |format: SceneFormat, particles: ParticleOptions| {
+            let options = Options { particles, ..Options::default() };
+            format.read("a", b"x,y,z\n0,0,0\n", &options).unwrap_err().to_string()
+        };
+        let of_atoms = [
+            (ParticleOptions { waters: true, ..ParticleOptions::default() }, "it has no water to keep"),
+            (
+                ParticleOptions { frame: Some(2), ..ParticleOptions::default() },
+                "it has no frames to choose from",
+            ),
+        ];
+        for (options, expected) in of_atoms {
+            assert!(particles(SceneFormat::Csv, options).contains(expected), "{expected}");
+        }
+        let columns = ParticleOptions { columns: vec!["x".to_owned()], ..ParticleOptions::default() };
+        assert!(particles(SceneFormat::Pdb, columns).contains("it has no columns to name"));
     }
 
     #[test]

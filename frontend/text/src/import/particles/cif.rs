@@ -3,14 +3,18 @@
 
 use super::atoms::{Atom, AtomName, Atoms};
 use super::elements::element;
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextWord, fault};
 use crate::import::format::{SceneFormatRow, first_line};
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["cif", "mmcif"], "a structure of a molecule (mmCIF)", is_mine, read);
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
+    &["cif", "mmcif"],
+    ("a structure of a molecule (mmCIF)", &[ParticleUse::Waters, ParticleUse::Frame]),
+    is_mine,
+    read,
+);
 
 fn is_mine(bytes: &[u8]) -> bool {
     first_line(bytes).get(..5).is_some_and(|start| start.eq_ignore_ascii_case(b"data_"))

@@ -3,7 +3,7 @@
 //! comments.
 
 use super::cloud::{Cloud, linear_colors};
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
@@ -11,7 +11,7 @@ use jbt_model::diagnostic::Diagnostic;
 
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
     &["csv", "tsv"],
-    "a table of points",
+    ("a table of points", &[ParticleUse::Columns]),
     |_| false,
     |bytes, options| table(bytes, options, 3),
 );

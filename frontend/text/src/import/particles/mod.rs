@@ -26,6 +26,7 @@ mod xml;
 pub(super) mod xyz;
 
 pub use elements::{ELEMENTS, ElementFacts, element};
+pub(crate) use options::ParticleUse;
 pub use options::{ParticleForm, ParticleOptions};
 
 /// The most bytes of a file of particles: those that spans can name.

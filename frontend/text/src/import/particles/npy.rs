@@ -9,15 +9,19 @@
 use super::bytes::NumberType;
 use super::cloud::Cloud;
 use super::csv::PointTable;
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::fault_at;
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::particles::NumberArray;
 
-pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["npy"], "an array of numpy", |bytes| bytes.starts_with(MAGIC), read);
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
+    &["npy"],
+    ("an array of numpy", &[ParticleUse::Columns]),
+    |bytes| bytes.starts_with(MAGIC),
+    read,
+);
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 

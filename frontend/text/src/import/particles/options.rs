@@ -35,7 +35,25 @@ pub struct ParticleOptions {
     pub frame: Option<usize>,
 }
 
+/// An option that only some formats of particles have a use for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum ParticleUse {
+    Columns,
+    Waters,
+    Frame,
+}
+
 impl ParticleOptions {
+    /// What files with a use for these options alone lack, of what is asked for.
+    pub(in crate::import) fn useless(&self, uses: &[ParticleUse]) -> Option<&'static str> {
+        let asked = [
+            (!self.columns.is_empty(), ParticleUse::Columns, "no columns to name"),
+            (self.waters, ParticleUse::Waters, "no water to keep"),
+            (self.frame.is_some(), ParticleUse::Frame, "no frames to choose from"),
+        ];
+        asked.into_iter().find(|(is_set, kind, _)| *is_set && !uses.contains(kind)).map(|(.., what)| what)
+    }
+
     /// Whether anything is set.
     pub(in crate::import) fn is_set(&self) -> bool {
         *self != Self::default()

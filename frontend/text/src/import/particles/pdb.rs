@@ -3,14 +3,18 @@
 
 use super::atoms::{Atom, AtomName, Atoms};
 use super::elements::element;
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextLine, TextLines, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["pdb", "ent"], "a structure of a molecule (PDB)", is_mine, read);
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
+    &["pdb", "ent"],
+    ("a structure of a molecule (PDB)", &[ParticleUse::Waters, ParticleUse::Frame]),
+    is_mine,
+    read,
+);
 
 /// Records that a file begins with.
 const FIRST: [&[u8]; 6] = [b"HEADER", b"ATOM  ", b"HETATM", b"REMARK", b"CRYST1", b"TITLE "];

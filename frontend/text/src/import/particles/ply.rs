@@ -10,14 +10,18 @@
 
 use super::bytes::NumberType;
 use super::csv::{PointTable, left_out, listed};
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextLines, TextWord, fault, fault_at};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
 
-pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["ply"], "the vertices of a polygon file", is_mine, read);
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
+    &["ply"],
+    ("the vertices of a polygon file", &[ParticleUse::Columns]),
+    is_mine,
+    read,
+);
 
 fn is_mine(bytes: &[u8]) -> bool {
     bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r")

@@ -25,7 +25,7 @@ use jbt_model::diagnostic::Diagnostic;
 use jbt_model::particles::NumberArray;
 
 pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["vtk"], "the points of a VTK file", is_mine, read);
+    SceneFormatRow::of_particles(&["vtk"], ("the points of a VTK file", &[]), is_mine, read);
 
 const MAGIC: &[u8] = b"# vtk DataFile Version";
 

@@ -24,7 +24,7 @@ use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::Diagnostic;
 
 pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["vtu", "vtp"], "the points of a VTK file in XML", is_mine, read);
+    SceneFormatRow::of_particles(&["vtu", "vtp"], ("the points of a VTK file in XML", &[]), is_mine, read);
 
 fn is_mine(bytes: &[u8]) -> bool {
     let beginning = &bytes[..bytes.len().min(1024)];

@@ -14,14 +14,18 @@ use super::bytes::NumberType;
 use super::cloud::Cloud;
 use super::csv;
 use super::elements::{ELEMENTS, element};
-use super::options::ParticleOptions;
+use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_model::diagnostic::{Diagnostic, Span};
 
-pub(crate) const FORMAT: SceneFormatRow =
-    SceneFormatRow::of_particles(&["xyz"], "atoms, a cloud of points or raw numbers", is_atoms, read);
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
+    &["xyz"],
+    ("atoms, a cloud of points or raw numbers", &[ParticleUse::Columns, ParticleUse::Frame]),
+    is_atoms,
+    read,
+);
 
 /// Whether these are atoms: a number alone, a line of any text, a word and three numbers. Of a cloud nothing
 /// tells that it is one.
