@@ -40,6 +40,8 @@ pub const MAX_EXPRESSION_STEPS: usize = 100_000;
 pub const MAX_NODES: usize = 4_000_000;
 /// Uses of nodes, counted along every path from the root: what is left when no subtree is shared.
 pub const MAX_INSTANCES: usize = 4_000_000;
+/// Columns of a table of particles.
+pub const MAX_TABLE_COLUMNS: usize = 1 << 12;
 /// Particles of one model, which are rows and no nodes: each time that they are used. A row keeps some 200
 /// bytes while its model is meshed.
 pub const MAX_PARTICLES: usize = 1 << 27;

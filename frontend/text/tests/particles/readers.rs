@@ -268,6 +268,7 @@ fn what_is_wrong_is_told() {
     let long = |text: &str| text.as_bytes().to_vec();
     for (name, bytes, expected) in [
         ("a.csv", long("x,y\n1,2"), "a.csv:1:1: error: this line tells no places"),
+        ("a.csv", "1,".repeat(5000).into_bytes(), "a.csv:1:8193: limit: the line has more than 4096 columns"),
         ("a.csv", long("1,2,3\n4,5"), "a.csv:2:1: error: a line of 2 columns"),
         ("a.csv", long("1,2,3\n4,5,six"), "a.csv:2:5: error: column 3 is `six`"),
         ("a.csv", long("1,2,3\n4,5,nan"), "a.csv:2:5: error: column 3 is `nan`"),

@@ -7,6 +7,7 @@ use super::options::{ParticleOptions, ParticleUse};
 use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
+use jbt_ir::limits::MAX_TABLE_COLUMNS;
 use jbt_model::diagnostic::Diagnostic;
 
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
@@ -164,7 +165,11 @@ fn table(bytes: &[u8], options: &ParticleOptions, unnamed: usize) -> ReadModel {
         return Err(vec![Diagnostic::error(None, "the file has no lines")]);
     };
     let separator = Separator::of(first);
-    let head: Vec<TextWord<'_>> = separator.split(first).collect();
+    let head: Vec<TextWord<'_>> = separator.split(first).take(MAX_TABLE_COLUMNS + 1).collect();
+    if let Some(beyond) = head.get(MAX_TABLE_COLUMNS) {
+        let message = format!("the line has more than {MAX_TABLE_COLUMNS} columns");
+        return Err(vec![Diagnostic::limit(Some(beyond.span()), message)]);
+    }
     let has_names = head.iter().any(|word| word.number().is_none());
     let mut warnings = Vec::new();
     let made = if has_names {
