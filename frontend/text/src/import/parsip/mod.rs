@@ -44,6 +44,7 @@ use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
+use jbt_model::orientation::Orientation;
 use jbt_model::report::Report;
 use jbt_model::term::Term;
 use jbt_model::tree::Tree;
@@ -77,7 +78,8 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     match root {
         Some(root) if importer.errors.is_empty() => {
             importer.count();
-            Ok((Model::new(root), importer.warnings.finish()))
+            // Its locomotive stands that way.
+            Ok((Model { orientation: Orientation::Y_RIGHT, ..Model::new(root) }, importer.warnings.finish()))
         }
         _ => Err([importer.errors.finish(), importer.warnings.finish()].concat()),
     }
