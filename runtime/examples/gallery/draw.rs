@@ -11,6 +11,7 @@ use jbt::export::write_png;
 use jbt::{CheckedTree, Compiler, Fineness, Picture, Query, SceneFolder, text};
 
 use crate::list::{Drawing, Entry, Scene};
+use crate::looks;
 use crate::splash;
 
 /// See [`coarse`].
@@ -75,7 +76,8 @@ fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
     };
     let name = path.display().to_string();
     let files = text::files::Files::new(Arc::new(SceneFolder::of(&name)));
-    let options = text::Options { files, ..text::Options::default() };
+    let particles = looks::particles(&path.file_name().unwrap_or_default().to_string_lossy());
+    let options = text::Options { files, particles, ..text::Options::default() };
     Ok(jbt::Scene::from_reader(&name, text.as_slice(), &options)?.check()?)
 }
 

@@ -18,7 +18,13 @@ const SLICE: usize = 160;
 
 /// Samples of other programs that have a picture. They are no part of the project: a machine without them
 /// keeps the pictures.
-const SAMPLES: [&str; 2] = ["brlcad/moss.asc", "particles/1A8O.pdb"];
+const SAMPLES: [&str; 5] = [
+    "brlcad/moss.asc",
+    "particles/1A8O.pdb",
+    "particles/1A8O.cif",
+    "particles/free_particles_125_particles.vtk",
+    "parsip/train_corrected.scene",
+];
 
 /// A picture of the documentation.
 pub struct Entry {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use jbt::Box3;
 use jbt::contour;
+use jbt::import::particles::ParticleOptions;
 use jbt::render::{Background, Quality, Render, RenderMode, Stance, View};
 
 use crate::list::{Drawing, Entry, Scene};
@@ -46,7 +47,22 @@ const LOOKS: [(&str, Look); 19] = [
 /// The picture of an example.
 pub fn example(name: &str) -> Render {
     let own = LOOKS.iter().find(|(known, _)| *known == name);
-    rendered(own.map_or(&USUAL, |(_, look)| look))
+    let render = rendered(own.map_or(&USUAL, |(_, look)| look));
+    match particles(name).values.first() {
+        Some(shown) => Render { mode: RenderMode::Attribute(shown.clone()), ..render },
+        None => render,
+    }
+}
+
+/// What files of particles leave open; the array that is read is shown.
+pub fn particles(name: &str) -> ParticleOptions {
+    let options = ParticleOptions::default();
+    match name {
+        "1A8O.cif" => ParticleOptions { scale: Some(0.7), ..options },
+        "crown.vtu" => ParticleOptions { radius: Some(0.24), values: vec!["speed".to_owned()], ..options },
+        "free_particles_125_particles.vtk" => ParticleOptions { radius: Some(1.6), ..options },
+        _ => options,
+    }
 }
 
 /// The picture of a member of this family.
