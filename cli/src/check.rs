@@ -9,7 +9,8 @@ use jbt::export::constant_json;
 use jbt::tree::Bounds;
 use jbt::tree::{ConstantValues, LeafConstant, NodeKind};
 use jbt::{
-    AttributeGroup, CheckedTree, Classified as _, CompileError, Compiler, Engine, Parameter, Query, Task,
+    AttributeGroup, CheckedTree, Classified as _, CompileError, Compiler, Engine, Fixture, Parameter, Query,
+    Task,
 };
 use serde_json::{Map, Value, json};
 
@@ -243,6 +244,15 @@ fn in_range(parameter: &Parameter) -> String {
     })
 }
 
+/// What a parameter decides that stays as it was read.
+fn fixed(parameter: &Parameter) -> &'static str {
+    match parameter.fixture() {
+        None => "",
+        Some(Fixture::Expansion) => " (decides which nodes there are)",
+        Some(Fixture::Declaration) => " (a declaration depends on it)",
+    }
+}
+
 /// The parameters, and of derived and set ones their present values.
 fn parameters(tree: &CheckedTree) -> String {
     const SHOWN: usize = 20;
@@ -250,7 +260,7 @@ fn parameters(tree: &CheckedTree) -> String {
     let mut shown: Vec<String> = all
         .iter()
         .take(SHOWN)
-        .map(|p| format!("{} = {}{}", escape(p.name()), p.value(), in_range(p)))
+        .map(|p| format!("{} = {}{}{}", escape(p.name()), p.value(), in_range(p), fixed(p)))
         .collect();
     if all.len() > SHOWN {
         shown.push(format!("and {} more", all.len() - SHOWN));

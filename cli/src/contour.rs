@@ -1,5 +1,6 @@
 //! `jbt contour`: a slice of a scene as a drawing or an image, and what it took.
 
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use jbt::contour::{
@@ -8,6 +9,7 @@ use jbt::contour::{
 use jbt::diagnostic::escape;
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
+use jbt::tree::normalized;
 use jbt::{CheckedTree, Fineness, ModelOrigin, Picture, Query};
 use serde_json::{Value, json};
 
@@ -107,8 +109,8 @@ fn fineness(arguments: &ContourArguments, drawing: SliceKind) -> Result<Fineness
 }
 
 /// The attribute that the options speak of, where they do not name it.
-fn attribute(arguments: &ContourArguments) -> &str {
-    arguments.attribute.as_deref().unwrap_or("color")
+fn attribute(arguments: &ContourArguments) -> Cow<'_, str> {
+    normalized(arguments.attribute.as_deref().unwrap_or("color"))
 }
 
 /// The mode of an image, and whether it needs attributes.
@@ -118,7 +120,7 @@ fn mode(arguments: &ContourArguments) -> (ImageMode, bool) {
         ModeName::Field => (ImageMode::Field, false),
         ModeName::Grey => (ImageMode::Grey, false),
         ModeName::Height => (ImageMode::Height, false),
-        ModeName::Attribute => (ImageMode::Attribute(attribute(arguments).to_owned()), true),
+        ModeName::Attribute => (ImageMode::Attribute(attribute(arguments).into_owned()), true),
     }
 }
 
@@ -133,7 +135,7 @@ fn check_attributes(
         SliceKind::Svg => paints || arguments.attribute.is_some(),
         SliceKind::Png => mode(arguments).1 || arguments.attribute.is_some(),
     };
-    let name = attribute(arguments);
+    let name = &*attribute(arguments);
     if !asked || tree.attributes().iter().any(|group| &*group.name == name) {
         return Ok(());
     }
@@ -175,7 +177,7 @@ fn style(arguments: &ContourArguments, tree: &CheckedTree) -> Style {
     let paint = |name: PaintName| match name {
         PaintName::None => Paint::None,
         PaintName::Color(color) => Paint::Color(color),
-        PaintName::Attribute => Paint::Attribute(attribute(arguments).to_owned()),
+        PaintName::Attribute => Paint::Attribute(attribute(arguments).into_owned()),
     };
     let plain = Style::default();
     let fill = match arguments.fill {

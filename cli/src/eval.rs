@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn text_is_quoted_where_a_table_needs_it() {
         for (text, expected) in [
-            ("union.0/arm", "union.0/arm"),
+            ("0.union/1.arm", "0.union/1.arm"),
             ("left arm", "left arm"),
             ("left, big.1/\"x\"", "\"left, big.1/\"\"x\"\"\""),
             ("a\nb", "\"a\nb\""),

@@ -6,7 +6,7 @@ use jbt::ModelOrigin;
 use jbt::diagnostic::escape;
 use jbt::export::{PngEffort, write_png_with};
 use jbt::render::{Camera, Quality, Render, RenderMode, RenderReport, Rendered, Stance, View};
-use jbt::tree::OWNER;
+use jbt::tree::{OWNER, normalized};
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
@@ -109,7 +109,7 @@ fn mode(words: &[String]) -> Result<RenderMode, Failure> {
         ["depth"] => Ok(RenderMode::Depth),
         ["evaluations"] => Ok(RenderMode::Evaluations),
         ["owner"] => Ok(RenderMode::Attribute(OWNER.to_owned())),
-        ["attribute", name] => Ok(RenderMode::Attribute(name.to_owned())),
+        ["attribute", name] => Ok(RenderMode::Attribute(normalized(name).into_owned())),
         ["attribute"] => Err(Failure::Usage("--mode attribute needs the name of an attribute".to_owned())),
         _ => Err(Failure::Usage(format!(
             "there is no mode `{}`; there are shaded, normal, depth, owner, attribute NAME and evaluations",

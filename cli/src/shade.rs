@@ -1,6 +1,7 @@
 //! Colours by an attribute: its values through a palette of colours, from the least to the largest.
 
 use jbt::mesh::{Attribute, Mesh};
+use jbt::tree::normalized;
 
 use crate::failure::Failure;
 
@@ -60,6 +61,7 @@ fn linear(encoded: f32) -> f32 {
 /// Gives a mesh the colours of an attribute: of its value, or of its length if it has several reals. Returns
 /// the least and the largest value, which have the first and the last colour if no range is given.
 pub fn shade(mesh: &mut Mesh, name: &str, ramp: Ramp, range: Option<[f64; 2]>) -> Result<[f64; 2], Failure> {
+    let name = &*normalized(name);
     let place = mesh.attributes.iter().position(|attribute| attribute.name == name);
     let Some(place) = place else {
         let known: Vec<&str> = mesh.attributes.iter().map(|attribute| attribute.name.as_str()).collect();

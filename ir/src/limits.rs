@@ -6,10 +6,11 @@
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
-/// Bytes that each turn of a loop, each call of a definition, and each node of what it stands for count for,
-/// besides the text that is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer
-/// than the longest text.
+/// Bytes that each turn of a loop, and each node of what a call stands for count for, besides the text that
+/// is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer than the longest text.
 pub const EXPANSION_BYTES: usize = 128;
+/// The same for each call of a definition that is expanded, which takes more time and memory than a turn.
+pub const CALL_BYTES: usize = 640;
 /// Calls and loops of a text that may be open in each other.
 pub const MAX_EXPANSION_DEPTH: usize = 256;
 /// Files that may include each other, each the next one.

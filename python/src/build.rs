@@ -4,6 +4,7 @@ use jbt::tree::{CombinatorKind, MapKind, Precedence, SkeletonKind, WarpKind};
 use jbt::{AttributeGroup, Mixing, Tree};
 use jbt_model::builder::Vector;
 use jbt_model::model::Model;
+use jbt_model::word::normalized;
 use jbt_model::written::{Radius, Written, WrittenAttribute, WrittenTextured, WrittenUv};
 use pyo3::prelude::*;
 
@@ -246,6 +247,7 @@ fn corner(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vector> {
 impl PyModel {
     /// The same with a group of this width, unless it has one of this name.
     fn declared(&self, name: &str, width: usize) -> Self {
+        let name = &*normalized(name);
         if self.inner().attributes.iter().any(|group| &*group.name == name) {
             return self.clone();
         }

@@ -7,6 +7,7 @@ use jbt::{
 };
 use jbt_model::model::Model;
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
+use jbt_model::word::normalized;
 use jbt_text::Options;
 use jbt_text::files::Files;
 use pyo3::prelude::*;
@@ -192,7 +193,7 @@ impl PyModel {
         let words: Vec<&str> = Mixing::ALL.iter().map(|known| known.name()).collect();
         let wrong = || refused(format!("mixing: expected one of {}, got {mixing:?}", words.join(", ")));
         let group = AttributeGroup {
-            name: name.into(),
+            name: normalized(name).into(),
             default,
             mixing: found.ok_or_else(wrong)?,
             kind: if turns { GroupKind::Direction } else { GroupKind::Numbers },

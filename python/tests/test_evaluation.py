@@ -214,7 +214,7 @@ def test_weights_mix_what_leaves_have() -> None:
     model = left + right
     points = np.random.default_rng(3).uniform(-2, 3, (500, 3)).astype(np.float32)
     weights = model.weights(points)
-    assert weights.names == ("sum.0/color.0/point", "sum.1/color.0/point")
+    assert weights.names == ("0.sum/0.color/0.point", "0.sum/1.color/0.point")
     assert weights.values.shape == (500, 2)
     assert weights.default.shape == (500,)
     np.testing.assert_allclose(weights.values.sum(axis=1) + weights.default, 1, atol=1e-6)
@@ -236,7 +236,7 @@ def test_weights_mix_what_leaves_have() -> None:
 def test_contains_and_owner(peanut: jbt.Model) -> None:
     assert peanut.contains([[0, 0.4, 0], [0, 3, 0]]).tolist() == [True, False]
     owners = peanut.owner([[0, 0.5, 0], [0, -0.5, 0], [9, 9, 9]])
-    assert owners.path == ["sum.0/color.0/point", "sum.1/color.0/point", None]
+    assert owners.path == ["0.sum/0.color/0.point", "0.sum/1.color/0.point", None]
     assert owners.leaf[2] == -1
     assert 0.5 < owners.share[0] < 1
     text = jbt.loads("jbt 1\nunion {\npoint { radius 1 }\n}")

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::query::{AnswerKind, Planes, Query};
+use jbt_model::word::normalized;
 
 /// Which plane holds what: the [answers](AnswerKind::ALL) in their order, as far as they were asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,7 @@ impl Layout {
     /// The first plane of an attribute group and its number of planes.
     #[must_use]
     pub fn attribute(&self, name: &str) -> Option<(usize, usize)> {
+        let name = normalized(name);
         self.attributes().find(|(group, ..)| *group == name).map(|(_, plane, width)| (plane, width))
     }
 }

@@ -177,7 +177,7 @@ pub use jbt_model::model::Model;
 pub use jbt_model::number::Number;
 pub use jbt_model::orientation::{Handed, ModelUp, Orientation};
 pub use jbt_model::origin::ModelOrigin;
-pub use jbt_model::parameter::{Parameter, ParameterRange};
+pub use jbt_model::parameter::{Fixture, Parameter, ParameterRange};
 pub use jbt_model::query::{AnswerKind, Planes, Query};
 pub use jbt_model::tree::Tree;
 pub use jbt_model::walk;

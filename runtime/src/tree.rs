@@ -56,6 +56,7 @@ pub use jbt_model::traverse::Visit;
 pub use jbt_model::tree::{Node, StyleUse, Tree};
 pub use jbt_model::warp::{Warp, WarpKind};
 pub use jbt_model::weights::{DEFAULT_WEIGHT, WEIGHT, WEIGHTS, WeightOf};
+pub use jbt_model::word::normalized;
 pub use jbt_model::written::{
     FieldNumber, ParticleRadius, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenParticles,
     WrittenTextured, WrittenUv,

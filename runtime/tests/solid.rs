@@ -513,7 +513,7 @@ fn a_long_chain_has_an_owner() {
     let tree = tree(&text);
     let owner = jbt_model::owner::owner(&tree, [0.0; 3]).unwrap();
     assert_eq!(owner.above.len(), depth);
-    assert_eq!(owner.path(&tree).len(), depth * "color.0/".len() + "point".len());
+    assert_eq!(owner.path(&tree).len(), depth * "0.color/".len() + "0.point".len());
 }
 
 #[test]

@@ -271,9 +271,9 @@ fn columns_are_called_by_the_ways_to_leaves() {
     let expected = [
         "owner",
         "color.defined",
-        "weights.body.0/left.0/sum.0/pin",
-        "weights.body.0/left.0/sum.1/hand",
-        "weights.body.2/particles",
+        "weights.body/left/pin",
+        "weights.body/left/hand",
+        "weights.body/2.particles",
         "weights.default",
     ];
     assert_eq!(names[4..], expected);

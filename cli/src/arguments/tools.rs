@@ -45,8 +45,8 @@ pub struct ShowArguments {
 /// What `jbt convert` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The text is the same model: it has the same field and attributes to the last bit, and stands the same way up. Names, comments
-and loops of the scene are not kept. docs/readers.md says what is read of each format, and what is left out.
+The text is the same model: it has the same field and attributes to the last bit, and stands the same way up. Names stay, and
+comments in front of statements; calls and loops are written out. docs/readers.md says what is read of each format, and what is left out.
 
 Examples:
   jbt convert drop.pov -o drop.jbt

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use clap::builder::{PossibleValue, TypedValueParser};
-use jbt::tree::{DEFAULT_WEIGHT, DEFINED, OWNER, WEIGHT, WEIGHTS, WeightOf};
+use jbt::tree::{DEFAULT_WEIGHT, DEFINED, OWNER, WEIGHT, WEIGHTS, WeightOf, normalized};
 use jbt::{AnswerKind, CheckedTree, Diagnostics, Query};
 
 use crate::failure::Failure;
@@ -27,7 +27,7 @@ impl WantedAnswers {
     fn parse(text: &str) -> Self {
         let mut wanted = Self::from(Query::FIELD);
         let (mut all, mut groups) = (false, Vec::new());
-        for word in text.split(',').map(str::trim) {
+        for word in normalized(text).split(',').map(str::trim) {
             match word.parse::<Query>() {
                 Ok(query) => {
                     wanted.query = query.answers().fold(wanted.query, Query::and);

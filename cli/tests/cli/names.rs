@@ -97,14 +97,14 @@ part \"rest\" {
         folder.jbt(&all).code(0).stdout()
     };
     // The pin has several places, of which the first one is told.
-    let first = "union.0/left.0/affine.0/pin";
+    let first = "left/pin";
     let expected = format!(
         "x,y,z,field,owner,owner.path
 -4,0,0,1,0,{first}
 4,0,0,1,0,{first}
-8,0,0,1,5,union.1/rest.0/rim.1/rough.0/point
+8,0,0,1,5,rest/rim/1.rough/0.point
 20,0,0,0,-1,
-0,8,0,1,9,union.1/rest.1/deform.0/point
+0,8,0,1,9,rest/1.deform/0.point
 "
     );
     let found = table("owner.path", &[]);
@@ -152,10 +152,10 @@ body: sum {
     let lines: Vec<&str> = all.lines().collect();
     assert_eq!(
         lines[0],
-        "x,y,z,field,owner,weights.body.0/left.0/point,weights.body.1/right.0/point,weights.default,color.defined,owner.path"
+        "x,y,z,field,owner,weights.body/left/0.point,weights.body/right/0.point,weights.default,color.defined,owner.path"
     );
-    assert!(lines[1].ends_with(",0.5,0.5,0,0.5,body.0/left.0/point"), "{}", lines[1]);
-    assert!(lines[2].ends_with(",1,0,0,1,body.0/left.0/point"), "{}", lines[2]);
+    assert!(lines[1].ends_with(",0.5,0.5,0,0.5,body/left/0.point"), "{}", lines[1]);
+    assert!(lines[2].ends_with(",1,0,0,1,body/left/0.point"), "{}", lines[2]);
     assert!(lines[3].ends_with(",-1,0,0,1,0,"), "{}", lines[3]);
     let named = table("left.weight,body/right.weight,weights.default");
     let lines: Vec<&str> = named.lines().collect();
@@ -195,16 +195,77 @@ fn many_parts_have_files_though_few_are_open() {
     assert!(files.len() == 60 && files.iter().all(|name| name.starts_with("many_p")), "{files:?}");
 }
 
+/// A letter with its mark as two characters is the letter as one, on the command line too.
+#[test]
+fn names_are_normalized_on_the_command_line() {
+    let scene = "jbt 1 attribute gr\u{f6}\u{df}e 1 gr\u{f6}\u{df}e 0.5 { point { surface_radius 1 } }";
+    let folder = Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n0,0,0\n");
+    let two = "gro\u{308}\u{df}e";
+    let eval = |query: &str| {
+        folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", query]).code(0).stdout()
+    };
+    assert_eq!(eval(two), "x,y,z,field,gr\u{f6}\u{df}e\n0,0,0,1,0.5\n");
+    let defined = eval(&format!("{two}.defined"));
+    assert_eq!(defined.lines().nth(1), Some("0,0,0,1,1"));
+    folder.jbt(&["mesh", "a.jbt", "-o", "a.glb", "--cell", "0.5", "--color-by", two]).code(0);
+    folder.jbt(&["render", "a.jbt", "-o", "a.png", "--size", "32x32", "--mode", "attribute", two]).code(0);
+    folder
+        .jbt(&[
+            "contour",
+            "a.jbt",
+            "-o",
+            "b.png",
+            "--size",
+            "32x32",
+            "--mode",
+            "attribute",
+            "--attribute",
+            two,
+        ])
+        .code(0);
+}
+
+/// What the paths of owners say, `--only` selects; a use with a name has weights.
+#[test]
+fn told_paths_select() {
+    let scene = "jbt 1 let arm = point { radius 1 }
+        union { left: use arm translate (3 0 0) { use arm } ring { center (0 0 4) ring_radius 1 radius 0.5 } }";
+    let folder = Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n0,0,0\n1,0,4\n");
+    let eval = |query: &str| {
+        folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", query]).code(0).stdout()
+    };
+    assert_eq!(eval("left.weight"), "x,y,z,field,left.weight\n0,0,0,1,1\n1,0,4,1,0\n");
+    let last = |line: &str| line.rsplit(',').next().unwrap().to_owned();
+    let paths: Vec<String> = eval("owner.path").lines().skip(1).map(last).collect();
+    assert_eq!(paths, ["left/arm", "0.union/2.ring"]);
+    for (path, kind) in paths.iter().zip(["point", "ring"]) {
+        let alone = folder.jbt(&["convert", "a.jbt", "-o", "-", "--only", path]).code(0).stdout();
+        let [kept, gone] = if kind == "ring" { ["ring {", "point {"] } else { ["point {", "ring {"] };
+        assert!(alone.contains(kept) && !alone.contains(gone), "{path}: {alone}");
+    }
+    let printed = folder.jbt(&["convert", "a.jbt", "-o", "-"]).code(0).stdout();
+    assert!(printed.contains("    left: use arm\n"), "{printed}");
+    // The name costs nothing.
+    let code = |text: &str| {
+        let folder = Folder::new().with("a.jbt", text);
+        folder.jbt(&["show", "a.jbt", "--stage", "ir"]).code(0).stdout()
+    };
+    assert_eq!(code(scene), code(&scene.replace("left: use arm", "use arm")));
+}
+
 /// A chain of many nodes has a way that is longer than anybody reads.
 #[test]
 fn long_ways_keep_their_ends() {
     let deep = 2000;
     let scene =
-        format!("jbt 1 {} leaf: point {{ radius 1 }} {}", "color (1 0 0) { ".repeat(deep), "}".repeat(deep));
+        format!("jbt 1 {} point {{ radius 1 }} {}", "color (1 0 0) { ".repeat(deep), "}".repeat(deep));
     let folder = Folder::new().with("a.jbt", scene).with("p.csv", "x,y,z\n0,0,0\n");
     let ran = folder.jbt(&["eval", "a.jbt", "--points", "p.csv", "-o", "-", "--query", "owner.path"]).code(0);
     let line = ran.stdout().lines().nth(1).unwrap().to_owned();
-    assert!(line.contains(",…/color.0/") && line.ends_with("/color.0/leaf") && line.len() < 1100, "{line}");
+    assert!(
+        line.contains(",…/0.color/") && line.ends_with("/0.color/0.point") && line.len() < 1100,
+        "{line}"
+    );
 }
 
 const SET: &str = "jbt 1

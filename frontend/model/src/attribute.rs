@@ -8,6 +8,7 @@ use glam::DVec3;
 use crate::affine::sin_cos_degrees;
 use crate::expression::Expression;
 use crate::texture::Texture;
+use crate::word::normalized;
 
 pub use crate::precedence::Precedence;
 
@@ -82,7 +83,7 @@ impl AttributeGroup {
     /// A group of no reals so far, which are numbers, and mixed.
     pub(crate) fn mixed(name: &str) -> Self {
         Self {
-            name: name.into(),
+            name: normalized(name).into(),
             default: Vec::new(),
             mixing: Mixing::Blend,
             kind: GroupKind::Numbers,

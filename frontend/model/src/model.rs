@@ -35,9 +35,9 @@ pub struct Model {
     pub orientation: Orientation,
 }
 
-/// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `param NAME`, `attribute
-/// NAME`, `let NAME`, and `root` for the node of the model. A comment is lines that begin with `#`, and empty
-/// ones.
+/// Comments by the words of the statement behind them: `jbt`, `iso`, `origin`, `orientation`, `param NAME`,
+/// `attribute NAME`, `style NAME`, `part NAME`, `let NAME`, and `root` for the node of the model; `head` is
+/// one behind `jbt 1`, and `end` one behind all. A comment is lines that begin with `#`, and empty ones.
 pub type Comments = BTreeMap<String, Arc<str>>;
 
 impl Model {

@@ -23,6 +23,7 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::field::{NumberText, plain};
 use crate::function::Function;
+use crate::word::normalized;
 
 pub use binary::Binary;
 pub use formula::{NumberFormula, Step, Variable, show};
@@ -47,7 +48,7 @@ pub struct Number {
 /// then letters, digits and underscores, and not a word of the text format's expressions.
 #[must_use]
 pub fn param(name: &str, default: f64) -> Number {
-    let steps = vec![Step::Parameter { name: name.into(), default }];
+    let steps = vec![Step::Parameter { name: normalized(name).into(), default }];
     Number { value: default, formula: Some(Arc::new(NumberFormula::new(steps, None))) }
 }
 

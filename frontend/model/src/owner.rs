@@ -10,8 +10,7 @@
 //! equals the first in the file owns the point. The walk is in f64 over plain formulas, one point at a time,
 //! on a list of its own: a chain of a million nodes is a tree like any other.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use glam::DVec3;
 
@@ -23,6 +22,7 @@ use crate::diagnostic::Span;
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
 use crate::particles::Particles;
+use crate::path::{NamedNodes as _, child_step, name_step, names_in_names, path_of};
 use crate::warp::Warp;
 
 /// A leaf that decides, as one of its instances.
@@ -41,26 +41,19 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// The way from the root to the leaf: names, or kinds where there is none, and numbers of children, as in
-    /// `union.2/color.0/arm`.
+    /// The way from the root to the leaf, a [path](crate::path) that leads to it alone: names, and behind the
+    /// last one numbers of children with the words of their kinds, as in `body/arm.1/0.color/2.point`; without
+    /// names from the root on, `0.union/2.point`. Particles have one path together.
+    ///
+    /// Cost: the nodes of the tree, each a few times.
     #[must_use]
     pub fn path(&self, tree: &CheckedTree) -> String {
-        let mut path = String::new();
-        for &(node, child) in self.above.iter().filter(|(node, _)| !tree.is_given(*node)) {
-            let _ = write!(path, "{}.{child}/", word(tree.node(node)));
-        }
-        let node = tree.node(self.node);
-        match &node.kind {
-            NodeKind::Particles(_) => format!("{path}{}.{}/point", word(node), self.particle),
-            NodeKind::Primitive(_)
-            | NodeKind::Combine(_)
-            | NodeKind::Expression(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. }
-            | NodeKind::Constant { .. } => path + word(node),
-        }
+        path_of(tree, tree.root(), &self.steps(self.above.len()), self.node)
+    }
+
+    /// The first nodes above it, each with the child that leads on.
+    fn steps(&self, depth: usize) -> Vec<(NodeId, usize)> {
+        self.above[..depth].iter().map(|&(node, child)| (node, child as usize)).collect()
     }
 
     /// The constants that the leaf has, by name: of several of one name above it the nearest one, unless one
@@ -103,13 +96,9 @@ impl Owner {
     /// ```
     #[must_use]
     pub fn part(&self, tree: &CheckedTree) -> Option<String> {
-        let way = self.above.iter().map(|&(node, _)| node).chain([self.node]);
-        let named: Vec<(usize, &str)> =
-            way.enumerate().filter_map(|(depth, node)| Some((depth, tree.node(node).name()?))).collect();
-        let &(depth, _) = named.last()?;
-        let names: Vec<&str> = named.iter().map(|&(_, name)| name).collect();
-        let found = tree.find(&names.join("/")).ok()?;
-        found.into_iter().find(|found| found.above == self.above[..depth]).map(|found| found.path)
+        let way: Vec<NodeId> = self.above.iter().map(|&(node, _)| node).chain([self.node]).collect();
+        let depth = way.iter().rposition(|&node| tree.node(node).name().is_some())?;
+        Some(path_of(tree, tree.root(), &self.steps(depth), way[depth]))
     }
 }
 
@@ -121,7 +110,7 @@ impl Owner {
 /// let text = "jbt 1 let a = point { radius 1 }
 ///     union { left: translate (1 0 0) { use a } translate (2 0 0) { use a } }";
 /// let tree = jbt_text::model(text)?.check()?;
-/// assert_eq!(LeafWays::new(&tree).path(NodeId(0), 100).as_deref(), Some("union.0/left.0/a"));
+/// assert_eq!(LeafWays::new(&tree).path(NodeId(0), 100).as_deref(), Some("left/a"));
 /// # Ok::<(), jbt_model::diagnostic::Diagnostics>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -129,28 +118,76 @@ pub struct LeafWays<'a> {
     tree: &'a CheckedTree,
     /// Of each node that a way leads to: the node above it, and which of its children it is.
     above: Vec<Option<(NodeId, u32)>>,
+    /// Of each of them that has a name: the name above, and how many of its own came before below that.
+    places: Vec<Option<(u32, u64)>>,
+    /// How often each name stands below a name; first those below none.
+    counts: Vec<HashMap<&'a str, u64>>,
+    inner: HashSet<&'a str>,
+}
+
+/// A place that a walk comes to.
+struct WayVisit {
+    node: NodeId,
+    above: Option<(NodeId, u32)>,
+    /// The name above.
+    name: u32,
+    /// Whether what it says is heard.
+    answers: bool,
 }
 
 impl<'a> LeafWays<'a> {
-    /// Those of a tree. Cost: each node once.
+    /// Those of a tree. Cost: each node once, and once more for each path to it if it, or what is below it,
+    /// has a name and no name is between.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
-        let mut above = vec![None; tree.nodes().len()];
-        let mut seen = vec![false; tree.nodes().len()];
-        let mut stack = vec![(tree.root(), None)];
-        while let Some((id, way)) = stack.pop() {
-            if std::mem::replace(&mut seen[id.0 as usize], true) {
+        let count = tree.nodes().len();
+        let mut ways = Self {
+            tree,
+            above: vec![None; count],
+            places: vec![None; count],
+            counts: vec![HashMap::new()],
+            inner: names_in_names(tree, tree.root()),
+        };
+        let mut has_names = vec![false; count];
+        for (index, node) in tree.nodes().iter().enumerate() {
+            let below = node.children.iter().any(|child| has_names[child.0 as usize]);
+            has_names[index] = below || node.name().is_some();
+        }
+        let mut seen = vec![false; count];
+        let mut stack = vec![WayVisit { node: tree.root(), above: None, name: 0, answers: true }];
+        while let Some(WayVisit { node: id, above, name: mut level, answers }) = stack.pop() {
+            let index = id.0 as usize;
+            let node = tree.node(id);
+            let is_first = answers && !seen[index];
+            seen[index] |= answers;
+            if let Some(name) = node.name() {
+                let before = ways.counts[level as usize].entry(name).or_default();
+                if is_first {
+                    ways.places[index] = Some((level, *before));
+                }
+                *before += 1;
+                level = ways.counts.len() as u32;
+                ways.counts.extend(is_first.then(HashMap::new));
+            }
+            // What has been met before is gone through for the names alone that count here.
+            if !is_first && (node.name().is_some() || !has_names[index]) {
                 continue;
             }
-            above[id.0 as usize] = way;
-            let node = tree.node(id);
+            if is_first {
+                ways.above[index] = above;
+            }
             let answering = match &node.kind {
                 NodeKind::Warp(_) => 0..1,
                 kind => kind.places_asked(node.children.len()),
             };
-            stack.extend(answering.rev().map(|child| (node.children[child], Some((id, child as u32)))));
+            stack.extend(node.children.iter().enumerate().rev().map(|(place, &child)| WayVisit {
+                node: child,
+                above: Some((id, place as u32)),
+                name: level,
+                answers: is_first && answering.contains(&place),
+            }));
         }
-        Self { tree, above }
+        ways
     }
 
     /// The leaves that a way leads to and that have a field, ascending.
@@ -163,27 +200,56 @@ impl<'a> LeafWays<'a> {
         id == self.tree.root() || self.above[id.0 as usize].is_some()
     }
 
-    /// The way from the root to a node, as [`Owner::path`] has it, but that it does not tell particles apart;
-    /// `None` if no way leads there. Of one that takes more than so many bytes, the end, behind `…/`.
+    /// The node above one that the model has, and which of its children that is.
+    fn above_plain(&self, id: NodeId) -> Option<(NodeId, u32)> {
+        let (mut node, mut child) = self.above[id.0 as usize]?;
+        while self.tree.is_given(node) {
+            (node, child) = self.above[node.0 as usize]?;
+        }
+        Some((node, child))
+    }
+
+    /// Whether the name of a step stands below other names as well.
+    fn begins_inside(&self, step: &str) -> bool {
+        self.inner.contains(step.split('.').next().unwrap_or(step))
+    }
+
+    /// The way from the root to a node, as [`Owner::path`] has it; `None` if no way leads there. Of one that
+    /// takes more than so many bytes, the end, behind `…/`, which is no path any more.
     #[must_use]
     pub fn path(&self, leaf: NodeId, longest: usize) -> Option<String> {
-        let mut steps = vec![word(self.tree.nodes().get(leaf.0 as usize)?).to_owned()];
-        let (mut length, mut at) = (steps[0].len(), leaf);
-        while let Some((node, child)) = self.above[at.0 as usize] {
-            at = node;
-            if self.tree.is_given(node) {
-                continue;
-            }
-            let step = format!("{}.{child}", word(self.tree.node(node)));
+        if leaf.0 as usize >= self.tree.nodes().len() || !self.reaches(leaf) {
+            return None;
+        }
+        let mut steps: Vec<String> = Vec::new();
+        let (mut length, mut next, mut is_named) = (0, Some(leaf), false);
+        while let Some(at) = next {
+            let above = self.above_plain(at);
+            next = above.map(|(node, _)| node);
+            let name = self.tree.node(at).name().zip(self.places[at.0 as usize]);
+            let step = match name {
+                Some((name, (level, place))) => {
+                    is_named = true;
+                    let all = self.counts[level as usize].get(name);
+                    name_step(name, all.is_some_and(|&all| all > 1).then_some(place))
+                }
+                // Above a name nothing else counts.
+                None if is_named => continue,
+                None => child_step(above.map_or(0, |(_, child)| child as usize), self.tree.word(at)),
+            };
             length += step.len() + 1;
-            if length > longest {
+            if length > longest + 1 && !steps.is_empty() {
                 steps.push("…".to_owned());
                 break;
             }
             steps.push(step);
         }
+        if is_named && next.is_none() {
+            let first = steps.last_mut().filter(|step| self.begins_inside(step));
+            first.into_iter().for_each(|step| step.insert(0, '/'));
+        }
         steps.reverse();
-        self.reaches(leaf).then(|| steps.join("/"))
+        Some(steps.join("/"))
     }
 }
 
@@ -198,23 +264,6 @@ fn is_leaf(node: &CheckedNode) -> bool {
         | NodeKind::Attribute { .. }
         | NodeKind::Constant { .. }
         | NodeKind::Select(_) => false,
-    }
-}
-
-/// The word for a node: its name, or that of its kind.
-fn word(node: &CheckedNode) -> &str {
-    if let Some(name) = node.name() {
-        return name;
-    }
-    match &node.kind {
-        NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
-        NodeKind::Particles(_) => "particles",
-        NodeKind::Combine(combinator) => combinator.name(),
-        NodeKind::Affine(_) => "affine",
-        NodeKind::Warp(warp) => warp.name(),
-        NodeKind::Attribute { name, .. } | NodeKind::Constant { name, .. } => name,
-        NodeKind::Select(_) => "select",
-        NodeKind::Expression(_) => "expression",
     }
 }
 

@@ -8,7 +8,7 @@ use crate::function::Function;
 use crate::number::{Number, NumberFormula, ParameterValues, Step};
 use crate::report::{clip, nearest};
 use crate::tree::Tree;
-use crate::word::{is_identifier, is_statement};
+use crate::word::{is_identifier, is_statement, normalized};
 
 /// A named parameter of a model.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ pub struct ParameterRange {
     pub low: f64,
     /// The largest value.
     pub high: f64,
-    /// From one value of a slider to the next, above 0.
+    /// From one value of a slider to the next, above 0: a hint, other values in the range are fine.
     pub step: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ impl Parameter {
     /// A parameter that nobody has set.
     #[must_use]
     pub fn new(name: &str, default: impl Into<Number>) -> Self {
-        let (name, default) = (name.into(), default.into());
+        let (name, default) = (normalized(name).into(), default.into());
         Self { name, default, setting: None, span: None, declares: None, range: None, label: None }
     }
 
@@ -102,7 +102,8 @@ impl Parameter {
     }
 
     /// The message about a value that is out of its range.
-    pub(crate) fn out_of_range(&self) -> Option<Diagnostic> {
+    #[must_use]
+    pub fn out_of_range(&self) -> Option<Diagnostic> {
         let range = self.range.filter(|range| !range.contains(self.value()))?;
         let message = format!("the parameter `{}` is {}", clip(&self.name), self.value());
         let expected = format!("expected a number from {} to {}", range.low, range.high);

@@ -22,6 +22,7 @@ use crate::combine::Combinator;
 use crate::map::MapKind;
 use crate::number::{Number, Vector};
 use crate::tree::Tree;
+use crate::word::normalized;
 use crate::written::{FieldNumber, Written, WrittenAttribute};
 
 /// A tree under construction: a stack of open scopes.
@@ -99,7 +100,8 @@ impl Scopes {
     /// An attribute for what follows.
     pub fn attribute<T: Into<Number> + Clone>(&mut self, name: &str, values: &[T]) -> &mut Self {
         let value = WrittenAttribute::Numbers(values.iter().cloned().map(Into::into).collect());
-        let written = Written::Attribute { name: name.into(), value, precedence: Precedence::Nearest };
+        let written =
+            Written::Attribute { name: normalized(name).into(), value, precedence: Precedence::Nearest };
         self.scope().around.push(written);
         self
     }

@@ -27,6 +27,16 @@ impl Parser<'_> {
         Some(Written::Constant { name: normalized(name).into(), value, precedence })
     }
 
+    /// Whether a number is what its text says. From the largest constant on, numbers that are not written out
+    /// may have been rounded.
+    fn is_exact(&self, value: f64, span: Span) -> bool {
+        if value.abs() < LARGEST_CONSTANT as f64 {
+            return true;
+        }
+        let written = self.source(span).trim_start_matches(['-', ' ']);
+        written.parse() == Ok(LARGEST_CONSTANT)
+    }
+
     /// Text in quotes, or a whole number; nothing after an error.
     fn constant_value(&mut self) -> Option<LeafConstant> {
         let token = self.peek();
@@ -45,10 +55,16 @@ impl Parser<'_> {
         if value.is_nan() {
             return None;
         }
-        if value.fract() != 0.0 || value.abs() > LARGEST_CONSTANT as f64 {
+        if value.fract() != 0.0 || !self.is_exact(value, span) {
+            let is_large = value.abs() >= LARGEST_CONSTANT as f64;
             self.report(|| {
-                Diagnostic::error(Some(span), format!("a constant is {value}"))
-                    .expected("expected text in quotes, or a whole number")
+                let error = Diagnostic::error(Some(span), format!("a constant is {value}"));
+                match is_large {
+                    true => {
+                        error.expected(format!("expected at most {LARGEST_CONSTANT} in magnitude, or text"))
+                    }
+                    false => error.expected("expected text in quotes, or a whole number"),
+                }
             });
             return None;
         }

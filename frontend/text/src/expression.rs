@@ -88,7 +88,7 @@ struct Stacks {
     /// How many groups, calls and places of elements wait.
     open: usize,
     /// The lists whose elements are picked.
-    lists: Vec<Vec<Value>>,
+    lists: Vec<Value>,
 }
 
 impl Stacks {
@@ -134,7 +134,7 @@ impl Stacks {
     }
 
     /// A place in brackets, of one of these elements.
-    fn open_index(&mut self, elements: Vec<Value>, at: u32) {
+    fn open_index(&mut self, elements: Value, at: u32) {
         self.open += 1;
         self.waiting.push((Waiting::Index(self.lists.len() as u32), at));
         self.lists.push(elements);

@@ -142,6 +142,7 @@
 mod attribute;
 mod block;
 mod color;
+mod comment;
 mod compare;
 mod constant;
 mod expression;

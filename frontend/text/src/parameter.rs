@@ -28,6 +28,9 @@ impl Parser<'_> {
             let setting = set.map(|&(_, value)| value);
             let parameter = Parameter::declared(name, default, setting, span);
             let parameter = if lost { parameter } else { self.control(parameter) };
+            if self.program.out_of_range.is_none() && !parameter.value().is_nan() {
+                self.program.out_of_range = parameter.out_of_range();
+            }
             self.references.insert(name, parameter.reference());
             self.parameters.push(parameter);
         }

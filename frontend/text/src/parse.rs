@@ -6,13 +6,12 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
 use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
-use super::part::PART;
 use super::program::known::Value;
 use super::state::{Options, Parser};
 use super::texts::Texts;
 use super::words::is_builtin;
 use jbt_model::attribute::{AttributeGroup, DIRECTION, GroupKind, Mixing};
-use jbt_model::diagnostic::{Diagnostic, Span, escape};
+use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::model::Model;
 use jbt_model::number::{Number, NumberFormula};
 use jbt_model::orientation::{Handed, ModelUp, Orientation};
@@ -53,46 +52,23 @@ pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
     if parser.report.is_empty() { Ok(value) } else { Err(parser.report.finish()) }
 }
 
-/// What a comment in front of the node of the model is kept by.
-pub(super) const ROOT: &str = "root";
-
-/// The comment in the blanks in front of a statement: its lines, each with `#`, and empty lines between them.
-/// What stands behind something on its line is no part of it.
-fn comment_of(gap: &str, is_start: bool) -> Option<String> {
-    if !gap.contains(['#', '/']) {
-        return None;
-    }
-    let gap = gap.replace("\r\n", "\n").replace('\r', "\n");
-    let lines = gap.split('\n').skip(usize::from(!is_start));
-    let mut kept: Vec<String> = Vec::new();
-    for line in lines {
-        let line = line.trim();
-        let words = line.strip_prefix('#').or_else(|| line.strip_prefix("//"));
-        match words {
-            Some(words) => kept.push(escape(&format!("#{words}"))),
-            None if kept.last().is_some_and(|last| !last.is_empty()) => kept.push(String::new()),
-            None => {}
-        }
-    }
-    while kept.last().is_some_and(String::is_empty) {
-        kept.pop();
-    }
-    (!kept.is_empty()).then(|| kept.join("\n"))
-}
-
 impl<'a> Parser<'a> {
     /// A text from its first word to its end.
     pub(super) fn file(&mut self) {
-        self.keep_comment();
+        self.keep_comment(false);
         self.header();
+        let head = self.previous_end();
         loop {
             let token = self.peek();
-            self.keep_comment();
+            self.keep_comment(self.previous_end() == head);
             match token.kind {
                 TokenKind::End => return,
                 TokenKind::Word => {
                     let word = self.text(token);
-                    if self.begins_definition(word) {
+                    if self.begins_named() {
+                        self.report_again();
+                        self.root(token);
+                    } else if self.begins_definition(word) {
                         self.report_again();
                         self.next();
                         self.definition_statement(word, token);
@@ -124,27 +100,6 @@ impl<'a> Parser<'a> {
                 }
             }
         }
-    }
-
-    /// Keeps the comment in front of the statement that is next.
-    fn keep_comment(&mut self) {
-        let token = self.peek();
-        let gap = self.lexer.text(self.previous_end(), token.start).unwrap_or_default();
-        let Some(comment) = comment_of(gap, self.previous_end() == self.lexer.start()) else { return };
-        if self.is_included() || token.kind != TokenKind::Word {
-            return;
-        }
-        let word = self.text(token);
-        let name = self.peek_behind();
-        let key = match word {
-            _ if self.begins_style(word) => format!("{word} {}", self.text(name)),
-            _ if self.begins_definition(word) => return,
-            _ if self.begins_part(word) => format!("{PART} {}", self.part_name()),
-            "jbt" | "iso" | "origin" => word.to_owned(),
-            _ if is_statement(word) && name.kind == TokenKind::Word => format!("{word} {}", self.text(name)),
-            _ => ROOT.to_owned(),
-        };
-        self.comments.insert(key, comment.into());
     }
 
     fn header(&mut self) {
@@ -396,8 +351,9 @@ impl<'a> Parser<'a> {
         if self.begins_value() {
             return self.let_value(name, span);
         }
+        let is_named = self.begins_named();
         let tree = self.tree();
-        let tree = self.with_name(tree, name);
+        let tree = if is_named { tree } else { self.with_name(tree, name, span) };
         if self.lets.insert(name, tree).is_some() || self.program.value(name).is_some() {
             self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
         }

@@ -90,7 +90,9 @@ impl<'a> Parser<'a> {
 
     /// Whether the word that is next begins a statement.
     fn ends_part(&self, word: &str) -> bool {
-        is_statement(word) || self.begins_part(word) || word != "include" && self.begins_definition(word)
+        let begins =
+            is_statement(word) || self.begins_part(word) || word != "include" && self.begins_definition(word);
+        begins && !self.begins_named()
     }
 
     /// The union of the parts, if there are some.

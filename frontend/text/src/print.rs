@@ -7,10 +7,11 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
-use super::parse::ROOT;
+use super::comment::{END, HEAD, ROOT};
 use super::part::PART;
 use super::words::{EMPTY, WEIGHTED};
 use jbt_model::attribute::{AttributeGroup, DIRECTION};
+use jbt_model::combine::CombinatorKind;
 use jbt_model::model::Model;
 use jbt_model::number::Number;
 use jbt_model::orientation::Orientation;
@@ -43,6 +44,7 @@ pub fn print(model: &Model) -> String {
     let mut out = String::new();
     comment(&mut out, model, "jbt");
     out.push_str("jbt 1\n");
+    comment(&mut out, model, HEAD);
     for parameter in model.all_parameters() {
         comment(&mut out, model, &format!("param {}", parameter.name()));
         print_parameter(&mut out, &parameter);
@@ -91,6 +93,7 @@ pub fn print(model: &Model) -> String {
         printer.tree(&mut out, &model.root, None);
         out.push('\n');
     }
+    comment(&mut out, model, END);
     out
 }
 
@@ -236,8 +239,23 @@ impl Printer {
         }
     }
 
+    /// What a node uses that is there for its name alone, `left: use arm`: a union of one subtree that stands
+    /// by itself and is called otherwise.
+    fn named_use(&self, tree: &Tree) -> Option<&str> {
+        let node = tree.node();
+        let name = node.name()?;
+        let is_plain = matches!(node.written(), Written::Combine { combinator: CombinatorKind::Union, .. });
+        let [child] = node.children() else { return None };
+        let used = self.names.get(&child.identity())?;
+        (is_plain && child.node().name() != Some(name)).then_some(used)
+    }
+
     /// Prints a node's head and leaves the rest of it on the stack.
     fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
+        if let Some(name) = self.named_use(tree) {
+            let _ = write!(out, "use {name}");
+            return;
+        }
         if let Some(style) = self.styles.used(tree) {
             before(out, style.precedence);
             let _ = write!(out, "{STYLE} {} {{ ", style.name);

@@ -46,7 +46,7 @@ impl<'a> Parser<'a> {
         let word = self.peek_word();
         let in_body = matches!(stack.frames.last(), Some(NodeFrame::Body(_)));
         match token.kind {
-            TokenKind::Word if in_body && word == Some("let") => {
+            TokenKind::Word if in_body && word == Some("let") && !self.begins_named() => {
                 self.report_again();
                 self.next();
                 self.local_let(stack);
@@ -158,6 +158,7 @@ impl<'a> Parser<'a> {
 
     /// Whether the word that is next begins a statement.
     fn begins_statement(&self, word: &str) -> bool {
-        is_statement(word) || word != "include" && self.begins_definition(word)
+        let begins = is_statement(word) || word != "include" && self.begins_definition(word);
+        begins && !self.begins_named()
     }
 }

@@ -139,6 +139,23 @@ fn what_is_wrong_has_its_place() {
         let found = error(text);
         assert!(found.contains(message) && found.contains(caret), "{text}: {found}");
     }
+    // Whole numbers are told apart up to 2^53; what may have been rounded is none.
+    for (number, is_fine) in [
+        ("9007199254740992", true),
+        ("-9007199254740992", true),
+        ("9007199254740991 - 1", true),
+        ("9007199254740993", false),
+        ("-9007199254740993", false),
+        ("9007199254740992 + 1", false),
+        ("2^53", false),
+        ("1e300", false),
+    ] {
+        let found = model(&format!("jbt 1 constant m {number} {{ point {{ radius 1 }} }}"));
+        assert_eq!(found.is_ok(), is_fine, "{number}");
+        let told = found.map_or_else(|error| error.to_string(), |model| print(&model));
+        let expected = if is_fine { "constant m" } else { "expected at most 9007199254740992 in magnitude" };
+        assert!(told.contains(expected), "{number}: {told}");
+    }
     let of = |name: &str, value: LeafConstant| Model::new(point([0; 3], 1).constant(name, value)).check();
     for (name, value, message) in [
         ("a b", 1.into(), "a constant is called `a b`"),

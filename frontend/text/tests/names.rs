@@ -1,10 +1,15 @@
 //! Names: they stay with their nodes, paths of them lead to places, comments stay with statements.
 
 use jbt_model::builder::{Axis, point};
+use jbt_model::combine::CombinatorKind;
+use jbt_model::map::MapKind;
 use jbt_model::model::Model;
 use jbt_model::owner::owner;
+use jbt_model::skeleton::SkeletonKind;
 use jbt_model::traverse::Visit;
 use jbt_model::walk::walk;
+use jbt_model::warp::WarpKind;
+use jbt_model::weights::WeightOf;
 use jbt_testkit::scene::assert_reads_back;
 use jbt_text::{Options, model, parse, print};
 
@@ -68,13 +73,137 @@ fn names_of_every_kind_survive() {
 }
 
 #[test]
+fn a_use_may_have_a_name() {
+    let text = "jbt 1
+        let arm = point { radius 1 }
+        # The other one.
+        let b = use arm
+        def f() { tip: point { at (0 0 3) radius 1 } }
+        let c = f()
+        union {
+            left: use arm
+            translate (3 0 0) { use arm }
+            translate (6 0 0) { use b }
+            translate (9 0 0) { right: f() }
+            use c
+            twice: left2: f()
+        }";
+    let model = read(text);
+    assert_eq!(names(&model), ["left", "arm", "b", "right", "tip", "c", "twice", "left2"]);
+    let tree = model.check().unwrap();
+    let paths = |path: &str| tree.find(path).unwrap().into_iter().map(|found| found.path).collect::<Vec<_>>();
+    assert_eq!(paths("arm"), ["left/arm", "/arm", "b/arm"]);
+    assert_eq!([paths("left"), paths("b"), paths("right")], [["left"], ["b"], ["right"]]);
+    assert_eq!(paths("tip"), ["right/tip", "c/tip", "twice/left2/tip"]);
+    assert!(tree.with_weights(WeightOf::Named("left")).is_ok());
+    assert!(tree.with_weights(WeightOf::Named("/arm")).is_err(), "one of two places of a shared node");
+    let found = owner(&tree, [6.1, 0.0, 0.0]).unwrap();
+    assert_eq!(found.part(&tree).as_deref(), Some("b/arm"));
+    same_field(&model.only("left").unwrap(), "jbt 1 point { radius 1 }");
+    same_field(&model.only("b").unwrap(), "jbt 1 translate (6 0 0) { point { radius 1 } }");
+    let printed = print(&model);
+    for line in ["    left: use arm\n", "# The other one.\nlet b = use arm\n", "{ right: use tip }"] {
+        assert!(printed.contains(line), "{line}: {printed}");
+    }
+    let again = assert_reads_back(&model);
+    assert_eq!((names(&again), print(&again)), (names(&model), printed));
+    // The subtree stays one, and the field is what it was.
+    let arm = model.root.prefix(Visit::Nodes).filter(|tree| tree.node().name() == Some("arm")).count();
+    assert_eq!(arm, 1);
+    let plain = "jbt 1 let arm = point { radius 1 } def f() { point { at (0 0 3) radius 1 } }
+        union { use arm translate (3 0 0) { use arm } translate (6 0 0) { use arm } translate (9 0 0) { f() } f() f() }";
+    same_field(&model, plain);
+    // The name that it has already is no second one.
+    let same =
+        read("jbt 1 let arm = point { radius 1 } union { arm: use arm translate (3 0 0) { arm: use arm } }");
+    assert_eq!(same.root.count(), 3);
+}
+
+#[test]
+fn every_word_may_be_a_name() {
+    let skeletons = SkeletonKind::ALL.iter().map(|kind| kind.name());
+    let operators = CombinatorKind::ALL.iter().map(|kind| kind.name());
+    let warps = WarpKind::ALL.iter().map(|kind| kind.name());
+    let members = skeletons.chain(operators).chain(warps).chain(MapKind::ALL.iter().map(|kind| kind.name()));
+    let others = [
+        "jbt",
+        "iso",
+        "origin",
+        "orientation",
+        "param",
+        "attribute",
+        "let",
+        "def",
+        "style",
+        "part",
+        "include",
+        "for",
+        "in",
+        "if",
+        "else",
+        "and",
+        "or",
+        "not",
+        "constant",
+        "override",
+        "with",
+        "empty",
+        "root",
+        "default",
+        "x",
+        "field",
+        "pi",
+        "sqrt",
+        "count",
+        "srgb",
+        "color",
+        "t0",
+        "n1",
+        "step",
+        "up",
+        "handed",
+        "yes",
+        "no",
+    ];
+    for word in members.chain(others) {
+        for text in [
+            format!("jbt 1 let {word} = point {{ radius 1 }} use {word}"),
+            format!("jbt 1 {word}: point {{ radius 1 }}"),
+            format!(
+                "jbt 1 # First.\nlet a = point {{ radius 1 }}\n# Second.\n{word}: union {{ use a use a }}"
+            ),
+            format!(
+                "jbt 1 union {{ {word}: point {{ radius 1 }} {word}: sum {{ {word}: point {{ radius 2 }} }} }}"
+            ),
+            format!("jbt 1 let {word} = point {{ radius 1 }} union {{ use {word} a: use {word} }}"),
+            format!("jbt 1 let a = point {{ radius 1 }} union {{ {word}: use a use a }}"),
+            format!("jbt 1 part \"a\" {{ {word}: point {{ radius 1 }} }} part \"b\" {{ {word}: empty }}"),
+            format!(
+                "jbt 1 def f(a) {{ {word}: point {{ radius 1 }} use a }} union {{ f({word}: point {{ radius 2 }}) }}"
+            ),
+            format!("jbt 1 union {{ for i in 0 .. 2 {{ {word}: point {{ radius i + 1 }} }} }}"),
+            format!("jbt 1 union {{ if 1 {{ point {{ radius 1 }} }} {word}: point {{ radius 2 }} }}"),
+        ] {
+            let model = read(&text);
+            assert!(names(&model).iter().any(|name| name == word), "{text}");
+            let printed = print(&model);
+            let again =
+                jbt_text::model(&printed).unwrap_or_else(|error| panic!("{text}\n{printed}\n{error}"));
+            assert_eq!(again, model, "{printed}");
+            assert_eq!((names(&again), print(&again)), (names(&model), printed));
+            assert_eq!(again.comments, model.comments, "{text}");
+        }
+    }
+}
+
+#[test]
 fn letters_of_any_script_are_names() {
     let text = "jbt 1 param größe = 2 attribute 光 1
         let колесо = point { radius größe }
         def ρόδα(ακτίνα) { point { radius ακτίνα } }
         चक्र: union { עיגול: use колесо 光 0.5 { ρόδα(3) } ñandú: point { radius 1 } }";
     let model = read(text);
-    assert_eq!(names(&model), ["चक्र", "колесо", "ñandú"]);
+    assert_eq!(names(&model), ["चक्र", "עיגול", "колесо", "ñandú"]);
     assert_eq!(names(&assert_reads_back(&model)), names(&model));
     let tree = model.check().unwrap();
     assert_eq!(tree.find("चक्र/ñandú").unwrap().len(), 1);
@@ -140,7 +269,7 @@ fn owners_are_told_in_words() {
     assert_eq!(part([0.1, 0.0, 0.0]).as_deref(), Some("robot/body"));
     assert_eq!(part([50.0, 0.0, 0.0]), None);
     let found = owner(&tree, [0.0, 0.0, -4.0]).unwrap();
-    assert_eq!(found.path(&tree), "robot.0/body.3/leg");
+    assert_eq!(found.path(&tree), "robot/body/leg");
     let plain = read("jbt 1 union { point { radius 1 } }").check().unwrap();
     assert_eq!(owner(&plain, [0.0; 3]).unwrap().part(&plain), None);
 }
@@ -230,20 +359,23 @@ fn errors_of_built_trees_say_where() {
     let arm = (point([0; 3], 1) + point([1, 0, 0], -2).named("hand")).named("arm");
     let tree = point([0; 3], 3) | arm.translate([1, 0, 0]) | point([0; 3], 1).twist(Axis::X, f64::NAN);
     let error = Model::new(tree).check().unwrap_err().to_string();
-    assert!(error.contains("error: the radius is -2\n  expected a number of at least 1e-15\n  at union.0/union.1/translate.0/arm.1/hand"), "{error}");
-    assert!(error.contains("\n  at union.1/twist"), "{error}");
+    assert!(
+        error.contains("error: the radius is -2\n  expected a number of at least 1e-15\n  at arm/hand"),
+        "{error}"
+    );
+    assert!(error.contains("\n  at 0.union/1.twist"), "{error}");
     let error = Model::new(point([0; 3], 1).named("my hand")).check().unwrap_err().to_string();
     assert!(error.contains("a node is called `my hand`"), "{error}");
 }
 
 #[test]
 fn comments_in_front_of_statements_stay() {
-    let text = "# What this shows.\n# In two lines.\n\n// And a third.\njbt 1 # not this one\n\n# How thick.\nparam r = 0.5\n# When inside.\niso 0.4\n\n# Far away.\norigin (0 0 0)\n# Rough.\nattribute rough 1 default 0 blend\n\n# An arm,\n#   indented.\nlet arm = segment { from (0 0 0) to (1 0 0) radius r }\n\n# All of it.\nunion {\n    # Comments in blocks are not kept.\n    use arm\n    point { radius 1 }\n}\n# The end is not, either.\n";
+    let text = "# What this shows.\n# In two lines.\n\n// And a third.\njbt 1 # not this one\n\n# How thick.\nparam r = 0.5\n# When inside.\niso 0.4\n\n# Far away.\norigin (0 0 0)\n# Rough.\nattribute rough 1 default 0 blend\n\n# An arm,\n#   indented.\nlet arm = segment { from (0 0 0) to (1 0 0) radius r }\n\n# All of it.\nunion {\n    # Comments in blocks are not kept.\n    use arm\n    point { radius 1 }\n}\n# The end.\n";
     let model = read(text);
     let printed = print(&model);
     assert_eq!(
         printed,
-        "# What this shows.\n# In two lines.\n\n# And a third.\njbt 1\n# How thick.\nparam r = 0.5\n# When inside.\niso 0.4\n# Far away.\norigin (0 0 0)\n# Rough.\nattribute rough 1 default 0 blend\n\n# An arm,\n#   indented.\nlet arm = segment { from (0 0 0) to (1 0 0) radius r }\n\n# All of it.\nunion {\n    use arm\n    point { radius 1 }\n}\n"
+        "# What this shows.\n# In two lines.\n\n# And a third.\njbt 1\n# How thick.\nparam r = 0.5\n# When inside.\niso 0.4\n# Far away.\norigin (0 0 0)\n# Rough.\nattribute rough 1 default 0 blend\n\n# An arm,\n#   indented.\nlet arm = segment { from (0 0 0) to (1 0 0) radius r }\n\n# All of it.\nunion {\n    use arm\n    point { radius 1 }\n}\n# The end.\n"
     );
     let again = assert_reads_back(&model);
     assert_eq!(print(&again), printed);
@@ -256,4 +388,54 @@ fn comments_in_front_of_statements_stay() {
     let mut built = Model::new(point([0; 3], 1));
     built.comments.insert("root".to_owned(), "}\nunion {".into());
     assert_eq!(assert_reads_back(&built), built);
+}
+
+#[test]
+fn comments_stay_at_their_places() {
+    let text = "# Before.\njbt 1\n# About all of it.\niso 0.4\nparam r = 1\n# Up.\norientation up y\n\n\
+                # A helper.\ndef f() { point { radius r } }\n# A value.\nlet n = 2\n# Unused.\n\
+                let spare = point { radius 2 }\n# A part.\npart \"hub\" { f() }\n\n# The end.\n\n# Really.";
+    let model = read(text);
+    let printed = print(&model);
+    assert_eq!(
+        printed,
+        "# Before.\njbt 1\n# About all of it.\nparam r = 1\niso 0.4\n# Up.\n\
+         orientation up y handed right\n\n# A part.\npart \"hub\" {\n    point { radius r }\n}\n\
+         # The end.\n\n# Really.\n"
+    );
+    let again = assert_reads_back(&model);
+    assert_eq!(print(&again), printed);
+    // In front of what is no head of a text, a comment is about that.
+    let plain = "jbt 1\niso 0.5\n\n# A ball.\npoint { radius 1 }\n";
+    assert_eq!(print(&read(&plain.replace("iso 0.5\n\n", ""))), plain);
+}
+
+#[test]
+fn marks_inside_of_words_are_parts_of_names() {
+    // The Tibetan tsheg, Hebrew gershayim.
+    for name in ["བོད་ཡིག", "צה״ל"] {
+        let model = read(&format!("jbt 1 {name}: point {{ radius 1 }}"));
+        assert_eq!(names(&assert_reads_back(&model)), [name]);
+        assert_eq!(model.check().unwrap().find(name).unwrap().len(), 1);
+    }
+    for name in ["d\u{2019}or", "a\u{2010}b", "\u{f0b}a"] {
+        assert!(model(&format!("jbt 1 {name}: point {{ radius 1 }}")).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn names_of_groups_are_normalized_wherever_they_stand() {
+    let (one, two) = ("gr\u{f6}\u{df}e", "gro\u{308}\u{df}e");
+    let group = jbt_model::attribute::AttributeGroup::direction(two, [0.0; 3]);
+    let ball = point([0; 3], jbt_model::number::param(two, 1.0)).attribute(two, &[1, 2, 3]).constant(two, 7);
+    let attributes = vec![jbt_model::attribute::AttributeGroup::color(), group];
+    let model = Model { attributes, ..Model::new(ball) };
+    let tree = model.check().unwrap();
+    assert_eq!(&*tree.attributes()[1].name, one);
+    assert_eq!(tree.parameters()[0].name(), one);
+    assert_eq!(tree.of_attributes(&[two]).unwrap().attributes().len(), 1);
+    assert_eq!(&*tree.with_coverage(two).unwrap().attributes()[2].name, format!("{one}.defined"));
+    let found = owner(&tree, [0.1; 3]).unwrap();
+    assert_eq!(found.constants(&tree)[one], &7.into());
+    assert_eq!(assert_reads_back(&model), model);
 }

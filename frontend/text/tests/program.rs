@@ -402,3 +402,43 @@ fn parameters_have_ranges_and_labels() {
         assert!(error.contains(message), "{declaration}: {error}");
     }
 }
+
+#[test]
+fn a_value_out_of_range_decides_no_nodes() {
+    let text = "jbt 1 param n = 3 in 0 .. 1000000000 param m = 2 * n
+        union { for i in 0 .. m { point { radius 1 } } if n > 5 { point { radius 2 } } point { radius n } }";
+    let options = Options { parameters: vec![("n".to_owned(), 2e9)], ..Options::default() };
+    let error = parse(text.as_bytes(), &options).unwrap_err().to_string();
+    assert!(
+        error.contains("the parameter `n` is 2000000000\n") && error.contains("from 0 to 1000000000"),
+        "{error}"
+    );
+    assert_eq!(error.matches("error:").count(), 1, "{error}");
+}
+
+#[test]
+fn long_lists_are_shared_and_their_copies_are_charged() {
+    let numbers: String = (0..60_000).map(|n| format!("{n} ")).collect();
+    let text = format!(
+        "jbt 1 let l = [{numbers}] def f(l, i) {{ point {{ at (l[i] 0 0) radius 1 }} }}
+         union {{ for i in 0 .. count(l) {{ f(l, i) }} }}"
+    );
+    let model = model(&text);
+    assert_eq!(model.root.node().children().len(), 60_000);
+    // Each of these would have a list of its own.
+    let points: String = (0..10_000).map(|n| format!("({n} 0 0) ")).collect();
+    let error = errors(&format!(
+        "jbt 1 let l = [{points}] union {{ for i in 0 .. 5000 {{ polyline {{ points l radius 1 + i }} }} }}"
+    ));
+    assert!(error.contains("limit: a copy of these 10000 elements would make the text longer"), "{error}");
+}
+
+#[test]
+fn calls_that_double_are_refused() {
+    let error = errors(
+        "jbt 1 def f(n, k) {
+            if n < 1 { point { at (k 0 0) radius 1 } } else { union { f(n-1, 2*k) f(n-1, 2*k+1) } }
+         } f(40, 0)",
+    );
+    assert!(error.contains("limit: this call of `f` would make the text longer"), "{error}");
+}

@@ -79,7 +79,7 @@ class Owners:
     Attributes:
         leaf: its number, the same for the same leaf; -1 where nobody decides.
         share: its part of the weight, up to 1; less than 1 where fields blend.
-        path: the way to it from the root, as "union.0/color.0/point"; None for nobody.
+        path: the way to it from the root, as "0.union/0.color/0.point"; None for nobody.
         line: the line of its text, from 1; 0 if the model came from none.
         constants: the constants that it has, by name; empty for nobody.
     """
@@ -102,7 +102,7 @@ class Weights:
     """How much each leaf, or what has a name, has to say at each point.
 
     Attributes:
-        names: the way to each leaf from the root, as "union.0/point", or the names that were asked for.
+        names: the way to each leaf from the root, as "0.union/0.point", or the names that were asked for.
         values: (n, len(names)), from 0 to 1: the coefficients by which attributes mix.
         default: (n,), the weight of nobody, which is that of an attribute's default: 1 where no leaf decides.
     """

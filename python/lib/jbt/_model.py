@@ -679,7 +679,7 @@ class Model(ModelMembers):
         >>> import jbt
         >>> model = jbt.point((0, 0, 0), radius=1) | jbt.point((2, 0, 0), radius=1)
         >>> model.owner([[0.1, 0, 0], [1.9, 0, 0], [9, 0, 0]]).path
-        ['union.0/point', 'union.1/point', None]
+        ['0.union/0.point', '0.union/1.point', None]
         """
         given, _, _ = columns(points, y, z)
         rows = np.column_stack(given).astype(np.float64)
@@ -708,7 +708,7 @@ class Model(ModelMembers):
         >>> model = jbt.point((0, 0, 0), radius=2) + jbt.point((1, 0, 0), radius=2)
         >>> weights = model.weights([[0.5, 0, 0], [9, 0, 0]])
         >>> weights.names, weights.values.tolist(), weights.default.tolist()
-        (('sum.0/point', 'sum.1/point'), [[0.5, 0.5], [0.0, 0.0]], [0.0, 1.0])
+        (('0.sum/0.point', '0.sum/1.point'), [[0.5, 0.5], [0.0, 0.0]], [0.0, 1.0])
         """
         named = None if of is None else list(dict.fromkeys(of))
         native = self._native.weights(named)

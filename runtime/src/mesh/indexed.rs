@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use jbt_model::orientation::{Handed, Orientation};
 use jbt_model::origin::ModelOrigin;
+use jbt_model::word::normalized;
 
 use crate::points::Points;
 
@@ -118,6 +119,7 @@ impl Mesh {
     /// The attribute of this name.
     #[must_use]
     pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        let name = normalized(name);
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 

@@ -3,6 +3,7 @@
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::check::CheckedTree;
+use jbt_model::word::normalized;
 
 use super::camera::View;
 use super::color::Rgb;
@@ -248,5 +249,6 @@ impl Render {
 
 /// The reals of an attribute group.
 fn width_of(tree: &CheckedTree, name: &str) -> Option<usize> {
-    tree.attributes().iter().find(|group| &*group.name == name).map(AttributeGroup::width)
+    let name = normalized(name);
+    tree.attributes().iter().find(|group| *group.name == *name).map(AttributeGroup::width)
 }

@@ -143,7 +143,7 @@ fn weights_keep_their_titles() {
     let here = compiled.evaluator(Query::SURFACE).expect("the model compiles");
     assert_eq!(there.layout(), here.layout());
     let names = here.layout().names();
-    assert!(names.iter().any(|name| name == "weights.union.1/segment"), "{names:?}");
+    assert!(names.iter().any(|name| name == "weights.0.union/1.segment"), "{names:?}");
     let points = Points::from([[0.25, 0.5, 0.0], [0.5, 0.0, 0.25]]);
     let of = |evaluator: &Evaluator| {
         let mut samples = evaluator.samples();

@@ -4,6 +4,7 @@ use super::{Number, Pattern, Vector};
 use crate::attribute::Precedence;
 use crate::constant::LeafConstant;
 use crate::tree::Tree;
+use crate::word::normalized;
 use crate::written::{Written, WrittenAttribute, WrittenTextured, WrittenUv};
 
 fn numbers<T: Into<Number> + Clone>(values: &[T]) -> Vec<Number> {
@@ -27,7 +28,7 @@ impl Tree {
     /// material or the number of a part. The [owner](crate::owner::Owner::constants) of a point answers it.
     #[must_use]
     pub fn constant(&self, name: &str, value: impl Into<LeafConstant>) -> Self {
-        let (name, value) = (name.into(), value.into());
+        let (name, value) = (normalized(name).into(), value.into());
         let written = Written::Constant { name, value, precedence: Precedence::Nearest };
         Self::new(written, vec![self.clone()])
     }
@@ -73,7 +74,8 @@ impl Tree {
     }
 
     pub(crate) fn given(&self, name: &str, value: WrittenAttribute) -> Self {
-        let written = Written::Attribute { name: name.into(), value, precedence: Precedence::Nearest };
+        let written =
+            Written::Attribute { name: normalized(name).into(), value, precedence: Precedence::Nearest };
         Self::new(written, vec![self.clone()])
     }
 }

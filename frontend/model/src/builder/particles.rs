@@ -5,6 +5,7 @@ use crate::attribute::Precedence;
 use crate::combine::CombinatorKind;
 use crate::particles::{NumberArray, ParticleValues, PerParticle};
 use crate::tree::Tree;
+use crate::word::normalized;
 use crate::written::{ParticleRadius, Written, WrittenParticles};
 
 /// The sum of points at these places, as one node: the same field, bit for bit, as that of a sum of `point`s
@@ -70,7 +71,7 @@ impl Tree {
     /// one particle after the other. ([`attribute`](Self::attribute) gives all leaves below the same.)
     #[must_use]
     pub fn values(&self, name: &str, width: usize, numbers: impl Into<NumberArray>) -> Self {
-        let values = ParticleValues { name: name.into(), width, numbers: numbers.into() };
+        let values = ParticleValues { name: normalized(name).into(), width, numbers: numbers.into() };
         self.map_particles(|particles| particles.with_values(values.clone()))
     }
 

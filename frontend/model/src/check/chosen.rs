@@ -1,5 +1,6 @@
 //! A checked tree that answers for some of its attribute groups alone.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -11,6 +12,7 @@ use crate::attribute::AttributeGroup;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::kind::NodeKind;
 use crate::report::{clip, nearest};
+use crate::word::normalized;
 
 impl CheckedTree {
     /// The same tree, of whose attribute groups there are these alone, in the order of the model. Its
@@ -32,6 +34,7 @@ impl CheckedTree {
     /// A name that no group of the model has.
     pub fn of_attributes(&self, names: &[impl AsRef<str>]) -> Result<Self, Diagnostics> {
         let known = || self.attributes.iter().map(|group| &*group.name);
+        let names: Vec<Cow<'_, str>> = names.iter().map(|name| normalized(name.as_ref())).collect();
         for name in names.iter().map(AsRef::as_ref) {
             if !known().any(|other| other == name) {
                 let error = Diagnostic::error(None, format!("no attribute is named `{}`", clip(name)));
@@ -40,7 +43,7 @@ impl CheckedTree {
                 return Err(vec![error.expected(near.unwrap_or_else(all))].into());
             }
         }
-        let is_wanted = |group: &str| names.iter().any(|name| name.as_ref() == group);
+        let is_wanted = |group: &str| names.iter().any(|name| name == group);
         let attributes: Vec<AttributeGroup> =
             self.attributes.iter().filter(|group| is_wanted(&group.name)).cloned().collect();
         let mut nodes = self.nodes.to_vec();

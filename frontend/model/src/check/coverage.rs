@@ -16,6 +16,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::kind::NodeKind;
 use crate::particles::{NumberArray, ParticleValues};
 use crate::report::clip;
+use crate::word::normalized;
 
 /// What stands behind the name of a group, in the name of the group of its coverage: `color.defined`.
 pub const DEFINED: &str = ".defined";
@@ -42,6 +43,7 @@ impl CheckedTree {
     /// A name that no group of the model has, a coverage that is there already, and a model that has as many
     /// groups as there may be.
     pub fn with_coverage(&self, group: &str) -> Result<Self, Diagnostics> {
+        let group = &*normalized(group);
         let name: Arc<str> = format!("{group}{DEFINED}").into();
         let refused = |message: String| Err(vec![Diagnostic::error(None, message)].into());
         if !self.has_group(group) {

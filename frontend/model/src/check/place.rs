@@ -1,13 +1,13 @@
 //! Where a node stands in a tree that came from no text: names, or kinds, on the way from the root.
 
 use std::collections::HashSet;
-use std::fmt::Write as _;
 
 use crate::diagnostic::Diagnostic;
+use crate::path::path_of;
 use crate::report::{Report, clip};
+use crate::tree::order::PlainNodes;
 use crate::tree::{Node, Tree};
 use crate::word::is_identifier;
-use crate::written::Written;
 
 /// A name is letters, digits and underscores.
 pub(super) fn check_name(report: &mut Report, node: &Node) {
@@ -19,8 +19,7 @@ pub(super) fn check_name(report: &mut Report, node: &Node) {
     }
 }
 
-/// The way from the root to the first place of a node, as `union.1/arm.0/point`: of each node its name, or
-/// the word of its kind, and the number of the child that leads on.
+/// The [path](crate::path) of the first place of a node, which leads to it alone.
 pub(super) fn way_to(root: &Tree, node: &Tree) -> String {
     let mut seen = HashSet::new();
     let mut way: Vec<(&Tree, usize)> = vec![(root, 0)];
@@ -39,25 +38,6 @@ pub(super) fn way_to(root: &Tree, node: &Tree) -> String {
             }
         }
     }
-    let mut text = String::new();
     let (last, above) = way.split_last().expect("the node is in its tree");
-    for (tree, child) in above {
-        let _ = write!(text, "{}.{child}/", word(tree.node()));
-    }
-    text + word(last.0.node())
-}
-
-/// The name of a node, or the word of its kind.
-fn word(node: &Node) -> &str {
-    node.name().unwrap_or_else(|| match node.written() {
-        Written::Primitive { skeleton, .. } => skeleton.name(),
-        Written::Particles(_) => "particles",
-        Written::Combine { combinator, .. } => combinator.name(),
-        Written::Expression(_) => "expression",
-        Written::Select(_) => "select",
-        Written::Map { map, .. } => map.name(),
-        Written::Warp { warp, .. } => warp.name(),
-        Written::FormulaWarp(_) => "warp",
-        Written::Attribute { name, .. } | Written::Constant { name, .. } => name,
-    })
+    path_of(PlainNodes::new(), root, above, last.0)
 }

@@ -6,14 +6,37 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::field::FieldKind;
 use crate::path::{MetNode, NamedNodes, NodePath, nowhere, search, too_many};
 use crate::traverse::Visit;
-use crate::tree::Tree;
 use crate::tree::order::PlainNodes;
+use crate::tree::{Node, Tree};
 use crate::written::{FieldNumber, Written};
 
 impl<'a> NamedNodes<'a> for PlainNodes<'a> {
     fn name(self, node: &'a Tree) -> Option<&'a str> {
         node.node().name()
     }
+
+    fn word(self, node: &'a Tree) -> &'a str {
+        word(node.node())
+    }
+
+    fn is_given(self, _node: &'a Tree) -> bool {
+        false
+    }
+}
+
+/// The name of a node, or the word of its kind.
+fn word(node: &Node) -> &str {
+    node.name().unwrap_or_else(|| match node.written() {
+        Written::Primitive { skeleton, .. } => skeleton.name(),
+        Written::Particles(_) => "particles",
+        Written::Combine { combinator, .. } => combinator.name(),
+        Written::Expression(_) => "expression",
+        Written::Select(_) => "select",
+        Written::Map { map, .. } => map.name(),
+        Written::Warp { warp, .. } => warp.name(),
+        Written::FormulaWarp(_) => "warp",
+        Written::Attribute { name, .. } | Written::Constant { name, .. } => name,
+    })
 }
 
 /// What is left of a subtree.

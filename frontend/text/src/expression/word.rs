@@ -23,7 +23,7 @@ impl Parser<'_> {
             return Some(false);
         }
         if self.peek().is(b'[')
-            && let Some(elements) = self.elements_named(word)
+            && let Some(elements) = self.elements_named(word).cloned()
         {
             let at = self.next().start as u32;
             stacks.open_index(elements, at);
@@ -82,7 +82,7 @@ impl Parser<'_> {
     /// another place is wanted, as that is a list, too.
     pub(super) fn finish_index(&mut self, stacks: &mut Stacks, list: u32, span: Span) -> Option<bool> {
         let place = stacks.operands.pop()?;
-        let elements = std::mem::take(&mut stacks.lists[list as usize]);
+        let elements = std::mem::replace(&mut stacks.lists[list as usize], Value::unknown());
         let steps = stacks.steps.split_off(place.first as usize);
         let number = match place.depends {
             true => Number::with_formula(place.value, NumberFormula::new(steps, None)),
@@ -93,10 +93,10 @@ impl Parser<'_> {
                 self.push_copy(stacks, &number, span)?;
                 Some(false)
             }
-            value => match value.elements().filter(|_| self.peek().is(b'[')) {
-                Some(elements) => {
+            value => match value.count().filter(|_| self.peek().is(b'[')) {
+                Some(_) => {
                     self.next();
-                    stacks.open_index(elements, span.start);
+                    stacks.open_index(value, span.start);
                     Some(true)
                 }
                 None => {

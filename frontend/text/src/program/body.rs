@@ -80,14 +80,16 @@ impl<'a> Parser<'a> {
             let value = self.value().unwrap_or_else(Value::unknown);
             self.program.bind(name, value);
         } else {
-            let frame = LocalFrame { name, span, first: stack.finished.len(), stays: false };
+            let (first, is_named) = (stack.finished.len(), self.begins_named());
+            let frame = LocalFrame { name, span, first, stays: false, is_named };
             stack.frames.push(NodeFrame::Local(Box::new(frame)));
         }
     }
 
     /// A name in front of a node, `NAME : node`, which has just been taken with its mark.
     pub(crate) fn named_node(&mut self, token: Token) -> Begun<'a> {
-        let frame = LocalFrame { name: self.text(token), span: token.span(), first: 0, stays: true };
+        let frame =
+            LocalFrame { name: self.text(token), span: token.span(), first: 0, stays: true, is_named: false };
         Begun::Named(Box::new(frame))
     }
 
@@ -97,9 +99,10 @@ impl<'a> Parser<'a> {
             match stack.frames.last() {
                 Some(NodeFrame::Local(frame)) => {
                     let (first, name, span, stays) = (frame.first, frame.name, frame.span, frame.stays);
+                    let is_named = frame.is_named;
                     stack.frames.pop();
                     let tree = self.only(stack, first, span, &format!("`{}`", clip(name)));
-                    let tree = self.with_name(tree, name);
+                    let tree = if is_named { tree } else { self.with_name(tree, name, span) };
                     if stays {
                         stack.finished.push(tree);
                     } else {

@@ -6,6 +6,8 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
+use jbt_ir::limits::{CALL_BYTES, EXPANSION_BYTES};
+
 use super::known::{BodyKind, CallFrame, CallKey, Remembered, Value};
 use crate::block::Begun;
 use crate::lex::{Token, TokenKind};
@@ -172,7 +174,7 @@ impl<'a> Parser<'a> {
             };
         }
         let what = format!("this call of `{}`", definition.name);
-        if !self.charge(1.0, definition.length, span, &what) {
+        if !self.charge(1.0, definition.length + (CALL_BYTES - EXPANSION_BYTES), span, &what) {
             return Begun::Nothing;
         }
         let back = self.lexer.place();
@@ -201,10 +203,12 @@ fn key(definition: usize, values: &[Value]) -> Option<CallKey> {
     while let Some(value) = stack.pop() {
         match value {
             Value::Number(number) => add_number(&mut words, number),
+            Value::Numbers(numbers) if numbers.len() > LONGEST => return None,
             Value::Numbers(numbers) => {
                 words.extend([1, numbers.len() as u64]);
                 numbers.iter().for_each(|number| add_number(&mut words, number));
             }
+            Value::List(list) if list.len() > LONGEST => return None,
             Value::List(list) => {
                 words.extend([2, list.len() as u64]);
                 stack.extend(list.iter().rev());

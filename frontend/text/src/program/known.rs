@@ -11,7 +11,7 @@ use jbt_ir::limits::MAX_SCENE_BYTES;
 use crate::files::FileReader;
 use crate::lex::TextPlace;
 use crate::texts::Texts;
-use jbt_model::diagnostic::Span;
+use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::label::LabelCall;
 use jbt_model::number::Number;
 use jbt_model::tree::Tree;
@@ -46,7 +46,25 @@ impl Value {
         }
     }
 
-    /// The elements of a list or of a vector, each a value.
+    /// How many elements a list or a vector has.
+    pub(crate) fn count(&self) -> Option<usize> {
+        match self {
+            Self::Number(_) | Self::Tree(_) => None,
+            Self::Numbers(numbers) => Some(numbers.len()),
+            Self::List(list) => Some(list.len()),
+        }
+    }
+
+    /// An element of a list or of a vector.
+    pub(crate) fn element(&self, place: usize) -> Option<Self> {
+        match self {
+            Self::Number(_) | Self::Tree(_) => None,
+            Self::Numbers(numbers) => numbers.get(place).cloned().map(Self::Number),
+            Self::List(list) => list.get(place).cloned(),
+        }
+    }
+
+    /// The elements of a list or of a vector, each a value. Cost: a copy of all.
     pub(crate) fn elements(&self) -> Option<Vec<Self>> {
         match self {
             Self::Number(_) | Self::Tree(_) => None,
@@ -96,6 +114,11 @@ pub(crate) struct TextProgram<'a> {
     pub(super) ends: HashMap<usize, usize>,
     /// Bytes of text that may still be read.
     pub(super) left: usize,
+    /// The message about a parameter that is out of its range: nodes that parameters decide are not looked at
+    /// then.
+    pub(crate) out_of_range: Option<Diagnostic>,
+    /// It has been told.
+    pub(super) tells_range: bool,
     /// Something has been expanded.
     pub(crate) has_expanded: bool,
 }
@@ -118,6 +141,8 @@ impl<'a> TextProgram<'a> {
             depth: 0,
             ends: HashMap::new(),
             left: MAX_SCENE_BYTES.saturating_sub(whole.len()),
+            out_of_range: None,
+            tells_range: false,
             has_expanded: false,
         }
     }
@@ -232,6 +257,8 @@ pub(crate) struct LocalFrame<'a> {
     pub(crate) first: usize,
     /// Whether the node stays where it is, with its name; else the name stands for it.
     pub(super) stays: bool,
+    /// Whether the node has a name in front of it, which is the one that it keeps.
+    pub(super) is_named: bool,
 }
 
 /// A call whose arguments are being read.

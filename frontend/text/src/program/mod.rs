@@ -15,7 +15,9 @@
 
 use jbt_ir::limits::{EXPANSION_BYTES, MAX_SCENE_BYTES};
 
+use super::lex::TokenKind;
 use super::state::Parser;
+use jbt_model::combine::{Combinator, Union};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::number::Number;
 use jbt_model::parameter::Fixture;
@@ -80,18 +82,50 @@ impl<'a> Parser<'a> {
         false
     }
 
-    /// Notes that nodes depend on a number which stays as it was read.
-    fn decides(&mut self, number: &Number, span: Span) {
-        if number.depends_on_parameters() {
-            self.declares(Fixture::Expansion, number, span);
+    /// Charges the copy of a vector or a list with so many elements. Those that are as short as a colour or a
+    /// place cost what their name does.
+    fn charge_elements(&mut self, count: usize, span: Span) -> bool {
+        const ELEMENT_BYTES: usize = 16;
+        const SHORT: usize = 8;
+        let cost = count.saturating_sub(SHORT) * ELEMENT_BYTES;
+        if cost == 0 {
+            return true;
+        }
+        let is_enough = self.is_enough(cost as f64, span, &format!("a copy of these {count} elements"));
+        self.program.left -= if is_enough { cost } else { 0 };
+        is_enough
+    }
+
+    /// Notes that nodes depend on a number which stays as it was read. False, after a message, if a parameter is
+    /// out of its range, so that the number decides nothing.
+    fn decides(&mut self, number: &Number, span: Span) -> bool {
+        if !number.depends_on_parameters() {
+            return true;
+        }
+        self.declares(Fixture::Expansion, number, span);
+        let Some(error) = self.program.out_of_range.clone() else { return true };
+        if !self.program.tells_range {
+            self.report(|| error);
+        }
+        self.program.tells_range = true;
+        false
+    }
+
+    /// A tree with a name. One that has another name already keeps it, below a union of this tree alone.
+    pub(super) fn with_name(&mut self, tree: Tree, name: &str, span: Span) -> Tree {
+        match tree.node().name() {
+            _ if tree.identity() == self.broken.identity() => tree,
+            None => tree.named(name),
+            Some(own) if own == name => tree,
+            Some(_) => {
+                self.count_node(span);
+                self.make(span, Combinator::from(Union {}), vec![tree]).named(name)
+            }
         }
     }
 
-    /// A tree with a name, unless it has one.
-    pub(super) fn with_name(&self, tree: Tree, name: &str) -> Tree {
-        if tree.node().name().is_some() || tree.identity() == self.broken.identity() {
-            return tree;
-        }
-        tree.named(name)
+    /// Whether what is next is a name in front of a node, `NAME : node`. Any word may be one.
+    pub(super) fn begins_named(&self) -> bool {
+        self.peek().kind == TokenKind::Word && self.peek_behind().is(b':')
     }
 }

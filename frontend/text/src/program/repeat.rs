@@ -144,8 +144,9 @@ impl<'a> Parser<'a> {
             self.report(|| Diagnostic::error(Some(span), format!("a range begins with {kind}")));
             return None;
         };
-        for number in [&low, &high.number, &step.number] {
-            self.decides(number, span);
+        let decide = [&low, &high.number, &step.number].map(|number| self.decides(number, span));
+        if decide.contains(&false) {
+            return None;
         }
         let (low, high, width) = (low.value(), high.number.value(), step.number.value());
         if low.is_nan() || high.is_nan() || width.is_nan() || self.is_muted() {
@@ -227,7 +228,7 @@ impl<'a> Parser<'a> {
                     return Begun::Leaf(self.broken.clone());
                 }
             }
-            if self.stopped || !self.accept_word(ELSE) {
+            if self.stopped || !self.accept_else() {
                 return Begun::Done;
             }
             if self.accept_word(IF) {
@@ -243,9 +244,14 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Takes an `else` that is no name of a node.
+    fn accept_else(&mut self) -> bool {
+        !self.begins_named() && self.accept_word(ELSE)
+    }
+
     /// Past all that stands behind a block for other cases.
     pub(super) fn skip_else(&mut self) {
-        while !self.stopped && self.accept_word(ELSE) {
+        while !self.stopped && self.accept_else() {
             if self.accept_word(IF) {
                 while !matches!(self.peek().kind, TokenKind::Mark(b'{' | b'}') | TokenKind::End) {
                     self.next();
@@ -300,8 +306,8 @@ impl<'a> Parser<'a> {
     /// A number on which nodes depend; nothing after an error.
     fn decided(&mut self) -> Option<f64> {
         let operand = self.expression(ExpressionPlace::Alone);
-        self.decides(&operand.number, operand.span);
+        let decides = self.decides(&operand.number, operand.span);
         let value = operand.number.value();
-        (!value.is_nan()).then_some(value)
+        (decides && !value.is_nan()).then_some(value)
     }
 }

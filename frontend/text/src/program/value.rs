@@ -115,14 +115,16 @@ impl<'a> Parser<'a> {
         let Some(mut value) = self.list_named(token) else { return Some(None) };
         self.next();
         while self.peek().is(b'[') && self.peek().start == self.previous_end() {
-            let Some(elements) = value.elements() else { break };
+            if value.count().is_none() {
+                break;
+            }
             self.next();
             let index = self.expression(ExpressionPlace::Alone);
             if self.accept(b']').is_none() {
                 self.expected_at(self.peek(), "expected `]` behind the place of an element");
                 return None;
             }
-            value = self.element(&elements, &index)?;
+            value = self.element(&value, &index)?;
         }
         let span = Span::new(token.start, self.previous_end());
         if let Value::Number(number) = &value {
@@ -145,16 +147,19 @@ impl<'a> Parser<'a> {
     }
 
     /// What has elements and is called by this word.
-    pub(crate) fn elements_named(&self, word: &str) -> Option<Vec<Value>> {
-        self.program.value(word)?.elements()
+    pub(crate) fn elements_named(&self, word: &str) -> Option<&Value> {
+        self.program.value(word).filter(|value| value.count().is_some())
     }
 
     /// The element of a place from 0; nothing, after a message, if there is none.
-    pub(crate) fn element(&mut self, elements: &[Value], index: &ParsedOperand) -> Option<Value> {
-        self.decides(&index.number, index.span);
-        let (place, count) = (index.number.value(), elements.len());
+    pub(crate) fn element(&mut self, all: &Value, index: &ParsedOperand) -> Option<Value> {
+        if !self.decides(&index.number, index.span) {
+            self.mute();
+            return None;
+        }
+        let (place, count) = (index.number.value(), all.count().unwrap_or_default());
         if place.fract() == 0.0 && place >= 0.0 && place < count as f64 {
-            return Some(elements[place as usize].clone());
+            return all.element(place as usize);
         }
         if !place.is_nan() {
             self.report(|| {
@@ -170,7 +175,7 @@ impl<'a> Parser<'a> {
     pub(crate) fn element_count(&mut self) -> Option<f64> {
         self.accept(b'(')?;
         let token = self.peek();
-        let count = self.peek_word().and_then(|word| self.elements_named(word)).map(|all| all.len());
+        let count = self.peek_word().and_then(|word| self.elements_named(word)).and_then(Value::count);
         if count.is_none() {
             self.expected_at(token, "expected the name of a list");
         } else {
@@ -188,6 +193,7 @@ impl<'a> Parser<'a> {
         let value = self.list_named(token)?;
         let (value, span) = self.bound(ExpressionPlace::Alone)?.unwrap_or((value, token.span()));
         match value {
+            Value::Numbers(numbers) if !self.charge_elements(numbers.len(), span) => None,
             Value::Numbers(numbers) => {
                 Some(Elements { count: numbers.len(), numbers: numbers.to_vec(), span })
             }
@@ -207,6 +213,9 @@ impl<'a> Parser<'a> {
         let token = self.peek();
         self.list_named(token)?;
         let (value, span) = self.bound(ExpressionPlace::Alone)??;
+        if !self.charge_elements(value.count().unwrap_or_default(), span) {
+            return Some(Vec::new());
+        }
         let elements = value.elements().unwrap_or_default();
         let numbers = |value: &Value| match value {
             Value::Number(number) => vec![number.clone()],
