@@ -30,7 +30,7 @@
 //!            | "part" QUOTED "{" { node } "}"             a solid of its own
 //!            | node ;
 //! body       = "{" { "let" NAME "=" ( node | item ) | node } "}" ;    nodes of which it stands for all
-//! node       = NAME ":" node                                 with a name
+//! node       = NAME ":" node                                 with a name, which any word may be
 //!            | NAME "(" [ [ NAME "=" ] ( item | node ) { "," .. } ] ")"    what a definition stands for
 //!            | "for" NAME "in" ( item | expression ".." expression [ "step" expression ] ) body
 //!            | "if" condition body { "else" "if" condition body } [ "else" body ]
@@ -94,7 +94,7 @@
 //! FUNCTION   = a word of [`functions`] ;                  in formulas also FALLOFF, of a distance of which 1 is the end
 //! HEX        = a double quote, "#", 3, 4, 6 or 8 digits in hex, a double quote ;
 //! QUOTED     = a double quote, text of one line, a double quote ;
-//! NAME       = letter { letter | mark | digit | "_" } ;  letters of any script (XID of Unicode), in the normal form C
+//! NAME       = letter { letter | mark | digit | "_" } ;  letters of any script (XID of Unicode, and marks inside of words), in the normal form C
 //! ```
 //!
 //! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of
