@@ -41,9 +41,9 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// The way from the root to the leaf, a [path](crate::path) that leads to it alone: names, and behind the
-    /// last one numbers of children with the words of their kinds, as in `body/arm.1/0.color/2.point`; without
-    /// names from the root on, `0.union/2.point`. Particles have one path together.
+    /// The way from the root to the leaf, a [path](crate::path) that leads to it alone: names, and behind
+    /// the last one numbers of children with the words of their kinds, as in `body/arm.1/0.color/2.point`;
+    /// without names from the root on, `0.union/2.point`. Particles have one path together.
     ///
     /// Cost: the nodes of the tree, each a few times.
     #[must_use]
@@ -83,8 +83,8 @@ impl Owner {
         found.into_values().filter_map(NodeKind::constant).collect()
     }
 
-    /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or of
-    /// the leaf itself, which leads to it alone; see [`path`](crate::path). Nothing if none has one.
+    /// The part that the leaf belongs to, in words: the path of the nearest node above that has a name, or
+    /// of the leaf itself, which leads to it alone; see [`path`](crate::path). Nothing if none has one.
     ///
     /// ```
     /// use jbt_model::owner::owner;

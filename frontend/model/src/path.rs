@@ -291,8 +291,8 @@ pub(crate) fn nowhere<'a>(path: &NodePath, names: impl Iterator<Item = &'a str>)
     })
 }
 
-/// The path of a place, which leads to it alone: names as far as there are some, each with its place where the
-/// name above has several of it, then numbers of children with their words.
+/// The path of a place, which leads to it alone: names as far as there are some, each with its place where
+/// the name above has several of it, then numbers of children with their words.
 ///
 /// Cost: the nodes of the tree, each a few times.
 pub(crate) fn path_of<'a, N: NamedNodes<'a>>(

@@ -31,8 +31,9 @@ pub fn begins_name(c: char) -> bool {
     if c.is_ascii() { c.is_ascii_alphabetic() } else { unicode_ident::is_xid_start(c) }
 }
 
-/// Marks inside of words that UAX 31 lets identifiers have besides (table 3a): Hebrew geresh and gershayim, the
-/// Tibetan tsheg, the hyphenation point. Apostrophes are none of them, nor is what looks like a minus sign.
+/// Marks inside of words that UAX 31 lets identifiers have besides (table 3a): Hebrew geresh and gershayim,
+/// the Tibetan tsheg, the hyphenation point. Apostrophes are none of them, nor is what looks like a minus
+/// sign.
 const IN_WORDS: [char; 4] = ['\u{5f3}', '\u{5f4}', '\u{f0b}', '\u{2027}'];
 
 /// Whether a character may go on with a name: a letter, a mark on one or between two, a digit, an underscore.

@@ -84,8 +84,8 @@ impl CheckedTree {
         self.below(&path, found, 0)
     }
 
-    /// The places that the numbers of a path lead to, from those that its names lead to, and behind so many of
-    /// the numbers.
+    /// The places that the numbers of a path lead to, from those that its names lead to, and behind so many
+    /// of the numbers.
     fn below(
         &self,
         path: &NodePath,

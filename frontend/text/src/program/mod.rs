@@ -96,8 +96,8 @@ impl<'a> Parser<'a> {
         is_enough
     }
 
-    /// Notes that nodes depend on a number which stays as it was read. False, after a message, if a parameter is
-    /// out of its range, so that the number decides nothing.
+    /// Notes that nodes depend on a number which stays as it was read. False, after a message, if a
+    /// parameter is out of its range, so that the number decides nothing.
     fn decides(&mut self, number: &Number, span: Span) -> bool {
         if !number.depends_on_parameters() {
             return true;
