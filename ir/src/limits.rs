@@ -10,7 +10,7 @@ pub const MAX_SCENE_BYTES: usize = 64 << 20;
 /// is read. All of them count to [`MAX_SCENE_BYTES`]: an expanded text is no longer than the longest text.
 pub const EXPANSION_BYTES: usize = 128;
 /// The same for each call of a definition that is expanded, which takes more time and memory than a turn.
-pub const CALL_BYTES: usize = 640;
+pub const CALL_BYTES: usize = 512;
 /// Calls and loops of a text that may be open in each other.
 pub const MAX_EXPANSION_DEPTH: usize = 256;
 /// Files that may include each other, each the next one.

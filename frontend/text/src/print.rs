@@ -243,7 +243,8 @@ impl Printer {
     /// by itself and is called otherwise.
     fn named_use(&self, tree: &Tree) -> Option<&str> {
         let node = tree.node();
-        let name = node.name()?;
+        // One that stands by itself is called like its `let` when it is read.
+        let name = node.name().or_else(|| Some(self.names.get(&tree.identity())?.as_str()))?;
         let is_plain = matches!(node.written(), Written::Combine { combinator: CombinatorKind::Union, .. });
         let [child] = node.children() else { return None };
         let used = self.names.get(&child.identity())?;

@@ -265,17 +265,20 @@ impl<'a> Parser<'a> {
 
     /// `comparison { ( "and" | "or" ) comparison }`, where `and` binds before `or`; nothing after an error.
     fn condition(&mut self) -> Option<bool> {
-        let mut any = false;
-        let mut all = self.comparison()?;
+        let mut any = Some(false);
+        let mut all = self.comparison();
         loop {
+            if self.is_muted() {
+                return None;
+            }
             if self.accept_word("and") {
-                let next = self.comparison()?;
-                all = all && next;
+                let next = self.comparison();
+                all = all.zip(next).map(|(all, next)| all && next);
             } else if self.accept_word("or") {
-                any = any || all;
-                all = self.comparison()?;
+                any = any.zip(all).map(|(any, all)| any || all);
+                all = self.comparison();
             } else {
-                return Some(any || all);
+                return any.zip(all).map(|(any, all)| any || all);
             }
         }
     }
@@ -286,12 +289,13 @@ impl<'a> Parser<'a> {
         while self.accept_word("not") {
             holds = !holds;
         }
-        let left = self.decided()?;
-        if !self.peek().is(COMPARISON) {
-            return Some((left != 0.0) == holds);
+        let left = self.decided();
+        if self.is_muted() || !self.peek().is(COMPARISON) {
+            return left.map(|left| (left != 0.0) == holds);
         }
         let token = self.next();
-        let right = self.decided()?;
+        let right = self.decided();
+        let (left, right) = (left?, right?);
         let found = match self.text(token) {
             "<" => left < right,
             "<=" => left <= right,
