@@ -209,20 +209,9 @@ fn names_are_normalized_on_the_command_line() {
     assert_eq!(defined.lines().nth(1), Some("0,0,0,1,1"));
     folder.jbt(&["mesh", "a.jbt", "-o", "a.glb", "--cell", "0.5", "--color-by", two]).code(0);
     folder.jbt(&["render", "a.jbt", "-o", "a.png", "--size", "32x32", "--mode", "attribute", two]).code(0);
-    folder
-        .jbt(&[
-            "contour",
-            "a.jbt",
-            "-o",
-            "b.png",
-            "--size",
-            "32x32",
-            "--mode",
-            "attribute",
-            "--attribute",
-            two,
-        ])
-        .code(0);
+    let slice =
+        ["contour", "a.jbt", "-o", "b.png", "--cell", "0.1", "--mode", "attribute", "--attribute", two];
+    folder.jbt(&slice).code(0);
 }
 
 /// What the paths of owners say, `--only` selects; a use with a name has weights.
