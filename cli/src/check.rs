@@ -91,7 +91,7 @@ fn check(path: &SceneArguments, arguments: &CheckArguments, quiet: bool) -> Resu
     let instances = compiled.evaluations_per_point(query).map_err(|error| scene.failure(&error))?;
     let too_large = COMMANDS.into_iter();
     let too_large = too_large.filter_map(|(name, task)| Some((name, in_a_line(why(task)?)))).collect();
-    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance);
+    let compare = || PartFindings::new(&scene, &tree, arguments.tolerance, arguments.region);
     let parts = arguments.overlaps.then(compare).transpose()?;
     Ok(Checked { scene, tree, instances, parts, too_large })
 }

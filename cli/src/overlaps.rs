@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use jbt::solid::{PartError, PartPair, PartSolids, Relation, Volume};
-use jbt::{CheckedTree, Compiler, Fineness};
+use jbt::{Box3, CheckedTree, Compiler, Fineness};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -23,11 +23,20 @@ pub struct PartFindings {
 }
 
 impl PartFindings {
-    /// Compares all parts. `tolerance`: how near points touch.
-    pub fn new(scene: &LoadedScene, tree: &CheckedTree, tolerance: Option<f64>) -> Result<Self, Failure> {
+    /// Compares all parts. `tolerance`: how near points touch; `region`: where.
+    pub fn new(
+        scene: &LoadedScene,
+        tree: &CheckedTree,
+        tolerance: Option<f64>,
+        region: Option<Box3<f64>>,
+    ) -> Result<Self, Failure> {
         let failed = |error: &PartError| scene.failure(error);
-        let parts = PartSolids::new(&Compiler::new(), tree).map_err(|error| failed(&error.into()))?;
-        let side = tree.support().longest_side();
+        let mut parts = PartSolids::new(&Compiler::new(), tree).map_err(|error| failed(&error.into()))?;
+        let mut side = tree.support().longest_side();
+        if let Some(region @ Box3 { low, high }) = region {
+            parts = parts.within(region);
+            side = (0..3).fold(0.0, |side: f64, axis| side.max(high[axis] - low[axis])).min(side);
+        }
         let usual = if side.is_finite() && side > 0.0 { side / TOLERANCES } else { 1.0 / TOLERANCES };
         let pairs = parts.relations(tolerance.unwrap_or(usual)).map_err(|error| failed(&error))?;
         let volume = |part: usize| Ok(parts.measure(part, Fineness::Resolution(CELLS))?.volume);
@@ -60,6 +69,12 @@ impl PartFindings {
                 Relation::Touching { within, at } => {
                     write!(out, "\n  touch        {a} and {b} near {}, within {}", place(at), digits(*within))
                 }
+                Relation::Undecided { thinner_than, at } => write!(
+                    out,
+                    "\n  undecided    {a} and {b} near {}: what both have is thinner than {}, or nothing",
+                    place(at),
+                    digits(*thinner_than)
+                ),
                 _ => {
                     apart += 1;
                     Ok(())
@@ -84,6 +99,9 @@ impl PartFindings {
                 }),
                 Relation::Touching { within, at } => {
                     json!({ "parts": names, "relation": "touching", "at": at, "within": within })
+                }
+                Relation::Undecided { thinner_than, at } => {
+                    json!({ "parts": names, "relation": "undecided", "at": at, "thinner_than": thinner_than })
                 }
                 Relation::Apart { more_than } => {
                     json!({ "parts": names, "relation": "apart", "more_than": more_than })

@@ -123,6 +123,7 @@ mod compiler;
 pub mod contour;
 mod counter;
 mod debug;
+pub mod differing;
 pub mod divide;
 mod error;
 mod evaluator;

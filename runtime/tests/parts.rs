@@ -287,3 +287,80 @@ fn distances_without_end_have_bounds() {
     assert!(gap.low <= expected + 1e-6 && expected <= gap.high + 1e-6, "{gap:?}");
     assert!(gap.low > 0.5 * expected && gap.high < 1.5 * expected, "{gap:?}");
 }
+
+/// A part: a rounded box about the z axis, by its half sides and its middle.
+fn slab(name: &str, half: [f64; 3], z: f64) -> String {
+    let [x, y, h] = half;
+    format!("part \"{name}\" {{ box {{ center (0 0 {z}) half ({x} {y} {h}) surface_radius 0.1 }} }}\n")
+}
+
+/// However thin and wide it is, an overlap is found by a point of it.
+#[test]
+fn thin_overlaps_are_found() {
+    for (half, overlap, tolerance) in [
+        ([10.0, 10.0, 0.4], 0.2, 0.02),
+        ([10.0, 10.0, 0.4], 0.3, 0.02),
+        ([10.0, 10.0, 0.4], 0.2, 0.0001),
+        ([10.0, 10.0, 0.4], 0.003, 0.02),
+        ([0.4, 0.4, 0.4], 0.015, 0.002),
+        ([0.4, 0.4, 0.4], 0.0004, 0.002),
+    ] {
+        // Not by halves of anything.
+        let z = 0.137;
+        let text = slab("a", half, z) + &slab("b", half, z + 2.0 * half[2] + 0.2 - overlap);
+        let found = parts(&text).relation(0, 1, tolerance).unwrap();
+        let Relation::Overlapping { at, volume } = found else { panic!("{half:?} {overlap}: {found:?}") };
+        let face = z + half[2] + 0.1;
+        assert!(face - overlap <= at[2] && at[2] <= face, "{overlap}: {at:?} {face}");
+        // The face has rounded edges, so the common part is a little smaller than a box.
+        let exact = 4.0 * half[0] * half[1] * overlap;
+        let most = 4.0 * (half[0] + 0.1) * (half[1] + 0.1) * overlap;
+        assert!(
+            volume.low > 0.0 && volume.low <= most && volume.high >= exact,
+            "{overlap}: {volume:?} {exact}"
+        );
+    }
+}
+
+/// What is said of parts that touch holds, and the place is where they do.
+#[test]
+fn contacts_have_their_place() {
+    let ball =
+        |name: &str, x: f64| format!("part \"{name}\" {{ point {{ at ({x} 0.3 0.1) surface_radius 1 }} }}\n");
+    for apart in [0.0, 0.004] {
+        let text = ball("a", -0.7) + &ball("b", 1.3 + apart);
+        let found = parts(&text).relation(0, 1, 0.005).unwrap();
+        let Relation::Touching { within, at } = found else { panic!("{apart}: {found:?}") };
+        let contact = [0.3 + 0.5 * apart, 0.3, 0.1];
+        assert!(within <= 0.005, "{found:?}");
+        assert!((0..3).all(|axis| (at[axis] - contact[axis]).abs() < 0.01), "{apart}: {at:?}");
+    }
+    // Faces of a million boxes: it is not decided, and what is said of the size of a common part is true.
+    let half = [10.0, 10.0, 0.4];
+    let parts = parts(&(slab("a", half, 0.0) + &slab("b", half, 1.0)));
+    match parts.relation(0, 1, 1e-4).unwrap() {
+        Relation::Undecided { thinner_than, at } => {
+            assert!(thinner_than < 0.5 && (at[2] - 0.5).abs() < 0.25 * thinner_than, "{thinner_than} {at:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+    let Relation::Touching { within, at } = parts.relation(0, 1, 0.15).unwrap() else { panic!() };
+    assert!(within <= 0.15 && (at[2] - 0.5).abs() < 0.01, "{within} {at:?}");
+}
+
+#[test]
+fn unbounded_parts_have_relations_in_a_region() {
+    let text = "part \"ground\" { half_space { normal (0 0 1) surface_radius 0.5 } }
+        part \"ball\" { point { at (0 0 1) surface_radius 0.75 } }
+        part \"air\" { half_space { at (0 0 4) normal (0 0 -1) surface_radius 0.5 } }";
+    let all = parts(text);
+    assert!(all.relation(0, 1, 0.01).is_err());
+    let inside = all.within(jbt::Box3::new([-3.0; 3], [3.0; 3]));
+    let Relation::Overlapping { at, volume } = inside.relation(0, 1, 0.01).unwrap() else { panic!() };
+    assert!((0.25..=0.5).contains(&at[2]), "{at:?}");
+    let cap = std::f64::consts::PI * 0.0625 * (3.0 * 0.75 - 0.25) / 3.0;
+    assert!(volume.low <= cap && cap <= volume.high, "{volume:?} {cap}");
+    assert!(matches!(inside.relation(1, 2, 0.01).unwrap(), Relation::Apart { .. }));
+    let ground = inside.measure(0, Fineness::Resolution(32)).unwrap().volume;
+    assert!(ground.low <= 126.0 && 126.0 <= ground.high, "{ground:?}");
+}

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::Shell;
-use jbt::{Query, SceneFormat};
+use jbt::{Box3, Query, SceneFormat};
 
+use super::space::region;
 use super::wanted::{WantedAnswers, WantedParser};
 use super::words::positive;
 use super::words::queries;
@@ -168,6 +169,9 @@ pub struct CheckArguments {
     /// How near to each other points of two parts touch; a 1024th of the longest side without it
     #[arg(long, value_name = "T", requires = "overlaps", value_parser = positive)]
     pub tolerance: Option<f64>,
+    /// The box in which parts are compared: its smallest and its largest corner; unbounded parts need one
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", requires = "overlaps", value_parser = region, allow_hyphen_values = true)]
+    pub region: Option<Box3<f64>>,
     /// Print one JSON object instead of messages and summaries
     #[arg(long)]
     pub json: bool,
@@ -176,11 +180,16 @@ pub struct CheckArguments {
 const CHECK_HELP: &str = "\
 All files are checked. The exit code is that of the first one with which something is wrong.
 
+Parts that overlap, and parts that are farther apart than the tolerance, are proven to. Others touch, if that could not
+be told down to boxes as small as the tolerance; they are undecided if there were too many such boxes. Then a
+larger tolerance says more.
+
 Keys of --json:
   files: [{file, ok, model: {nodes, leaves, instances, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
   (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing, direction}],
   overlaps: {parts: [{name, volume: {low, high, estimate}}], pairs: [{parts: [NAME, NAME], relation (apart, touching,
-  overlapping), at: [x, y, z], volume, within, more_than}]} (with --overlaps)}}] (model is null where something is wrong),
+  overlapping, undecided), at: [x, y, z], volume, within, more_than, thinner_than}]} (with --overlaps)}}]
+  (model is null where something is wrong),
   diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
   is one past the last character, columns count characters from 1, and what is not there is null
 
@@ -193,13 +202,15 @@ Examples:
 /// What `jbt diff` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Nodes are compared by what they mean: names, comments and sharing do not count. Children meet by equal content first,
-then by name, then by kind. Where fields differ is found on 48 points along each axis over both supports.
+Nodes are compared by what they mean: their names, comments and sharing do not count, names of parts do. Children meet by
+equal content first, then by name, then by kind; those that stand in another order than the others are told. Outside of
+the boxes that are told, fields are proven equal, but for rounding.
 
 Keys of --json:
-  same, hashes: [A, B] (stable over runs and versions), differences: [{path, first, second}] (path is empty for statements,
-  first or second null for what is in the other alone), field: {box: [x0, y0, z0, x1, y1, z1], at: [x, y, z], most}
-  (null if fields agree or reach to infinity)
+  same (equal hashes), hashes: [A, B] (stable over runs and versions), differences: [{path, first, second, moved}] (path is
+  empty for statements, first or second null for what is in the other alone, moved: the places in both of what stands in
+  another order, or null), field: [{box: [x0, y0, z0, x1, y1, z1], at: [x, y, z], most}] (at: where they differ most of the
+  points that were asked, most: by how much, 0 if they differ at none; null if they are the same model or reach to infinity)
 
 Examples:
   jbt diff old.jbt new.jbt
@@ -213,6 +224,9 @@ pub struct DiffArguments {
     pub second: PathBuf,
     #[command(flatten)]
     pub options: SceneOptions,
+    /// The box in which fields are compared: its smallest and its largest corner [default: where they may differ]
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
+    pub region: Option<Box3<f64>>,
     /// Print one JSON object instead of words
     #[arg(long)]
     pub json: bool,

@@ -112,10 +112,61 @@ fn two_scenes_are_compared() {
         "{told}"
     );
     let told = folder.jbt(&["diff", "a.jbt", "c.jbt"]).code(0).stdout();
-    assert!(told.starts_with("a.jbt and c.jbt are the same model, 1-"), "{told}");
+    assert!(told.starts_with("a.jbt and c.jbt are the same model, 2-"), "{told}");
     let report = folder.jbt(&["diff", "a.jbt", "b.jbt", "--json"]).code(0).json();
     assert_eq!((&report["same"], &report["differences"][0]["path"]), (&json!(false), &json!("union.0/hub")));
     folder.jbt(&["diff", "a.jbt", "none.jbt"]).code(4);
+}
+
+#[test]
+fn scenes_in_another_order_are_not_the_same() {
+    let [a, b] = ["point { at (-0.4 0 0) radius 1 }", "point { at (0.4 0 0) radius 1 }"];
+    let scene = |[a, b]: [&str; 2]| format!("jbt 1 difference {{ {a} {b} }}");
+    let part = |name: &str| format!("jbt 1 part \"{name}\" {{ {a} }}");
+    let ground = |z: &str| format!("jbt 1 half_space {{ at (0 0 {z}) radius 1 }}");
+    let folder = Folder::new()
+        .with("a.jbt", scene([a, b]))
+        .with("b.jbt", scene([b, a]))
+        .with("c.jbt", part("a"))
+        .with("d.jbt", part("b"))
+        .with("e.jbt", ground("0"))
+        .with("f.jbt", ground("1"));
+    let told = folder.jbt(&["diff", "a.jbt", "b.jbt"]).code(0).stdout();
+    assert!(told.contains("at difference.0/point\n  ~ in another order, place 0 is 1: point {"), "{told}");
+    assert!(told.contains("\n  fields differ from (-1.4"), "{told}");
+    let report = folder.jbt(&["diff", "a.jbt", "b.jbt", "--json"]).code(0).json();
+    assert_eq!((&report["same"], &report["differences"][0]["moved"]), (&json!(false), &json!([0, 1])));
+    assert_ne!(report["hashes"][0], report["hashes"][1]);
+    assert!(report["field"][0]["most"].as_f64().unwrap() > 0.5, "{report}");
+    // Parts have names, and the same field.
+    let report = folder.jbt(&["diff", "c.jbt", "d.jbt", "--json"]).code(0).json();
+    assert_eq!((&report["same"], &report["field"]), (&json!(false), &json!([])));
+    assert_eq!(report["differences"][0]["first"], "part \"a\"");
+    let told = folder.jbt(&["diff", "e.jbt", "f.jbt"]).code(0).stdout();
+    assert!(told.contains("--region says where"), "{told}");
+    let region = ["diff", "e.jbt", "f.jbt", "--region", "-1,-1,-3,1,1,3"];
+    assert!(folder.jbt(&region).code(0).stdout().contains("fields differ from (-1"));
+}
+
+#[test]
+fn thin_overlaps_and_unbounded_parts_are_told() {
+    let slab = |name: &str, z: f64| {
+        format!("part \"{name}\" {{ box {{ center (0 0 {z}) half (10 10 0.4) surface_radius 0.1 }} }}\n")
+    };
+    let ground = "part \"ground\" { half_space { surface_radius 0.1 } }";
+    let folder = Folder::new()
+        .with("thin.jbt", format!("jbt 1 {}{}", slab("a", 0.0), slab("b", 0.8)))
+        .with("flush.jbt", format!("jbt 1 {}{}", slab("a", 0.0), slab("b", 1.0)))
+        .with("ground.jbt", format!("jbt 1 {}{ground}", slab("a", 0.3)));
+    let told = folder.jbt(&["check", "--overlaps", "thin.jbt"]).code(0).stdout();
+    assert!(told.contains("overlap      a and b near ("), "{told}");
+    let told = folder.jbt(&["check", "--overlaps", "--tolerance", "0.0001", "flush.jbt"]).code(0).stdout();
+    assert!(told.contains("undecided    a and b near (") && told.contains("is thinner than 0."), "{told}");
+    folder.jbt(&["check", "--overlaps", "ground.jbt"]).code(2).says("--region gives it one");
+    let region = ["check", "--overlaps", "ground.jbt", "--region", "-12,-12,-2,12,12,2"];
+    let told = folder.jbt(&region).code(0).stdout();
+    assert!(told.contains("overlap      a and ground near ("), "{told}");
+    folder.jbt(&["check", "--region", "0,0,0,1,1,1", "thin.jbt"]).code(2);
 }
 
 #[test]

@@ -1,20 +1,21 @@
-//! Two models, item by item: what is in one and not in the other, and what is written otherwise.
+//! Two models, item by item: what is in one and not in the other, what is written otherwise, and what stands
+//! in another order.
 //!
 //! ```text
 //! compare(a, b):  equal hashes     the same
 //!                 equal words      compare the children: equal hashes meet first, then equal names, then equal
-//!                                  kinds, in order; the others are in one alone
-//!                 equal kinds      changed, and then as above
+//!                                  kinds, in order; the others are in one alone. Of those that meet, the longest
+//!                                  run in the order of both stays in place, and the others have moved
+//!                 other words      changed, and then as above
 //! ```
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use jbt_model::model::Model;
-use jbt_model::tree::Tree;
-use jbt_model::written::Written;
 
-use crate::hash::{ModelHash, hashes};
-use crate::item::{node_words, statements};
+use crate::hash::{ModelHash, NodeHashes};
+use crate::item::{ItemPlace, NodeItem, statements};
+use crate::pairs::{Pair, Partners};
 
 /// The most items of a comparison.
 pub const MAX_DIFFERENCES: usize = 10_000;
@@ -28,10 +29,14 @@ pub struct ModelDifference {
     pub first: Option<String>,
     /// How the second model has it; nothing if it is in the first alone.
     pub second: Option<String>,
+    /// Its places among its neighbours in both models, from 0, if it stands in another order there. The words
+    /// are those of the node then, and a change of the words is a difference of its own.
+    pub moved: Option<[usize; 2]>,
 }
 
 /// What two models differ in: statements first, then nodes in the order of the first one. At most
-/// [`MAX_DIFFERENCES`]. Names and comments do not count.
+/// [`MAX_DIFFERENCES`]. Names of nodes and comments do not count, names of parts and the order of nodes do:
+/// models with different hashes differ in something.
 ///
 /// ```
 /// use jbt_text::{compare, model};
@@ -45,104 +50,108 @@ pub struct ModelDifference {
 /// ```
 #[must_use]
 pub fn compare(first: &Model, second: &Model) -> Vec<ModelDifference> {
-    let mut found = Vec::new();
-    let [a, b] = [statements(first), statements(second)];
-    let only = |of: &[String], others: &[String]| -> Vec<String> {
-        let others: HashSet<&String> = others.iter().collect();
-        of.iter().filter(|one| !others.contains(one)).cloned().collect()
+    let mut found = compare_statements(&statements(first), &statements(second));
+    let search = ModelComparison {
+        hashes: [NodeHashes::new(&first.root), NodeHashes::new(&second.root)],
+        seen: HashSet::new(),
     };
-    let statement = |first: Option<String>, second: Option<String>| ModelDifference {
-        path: String::new(),
-        first,
-        second,
-    };
-    found.extend(only(&a, &b).into_iter().map(|one| statement(Some(one), None)));
-    found.extend(only(&b, &a).into_iter().map(|one| statement(None, Some(one))));
-    let search =
-        ModelComparison { hashes: [hashes(&first.root), hashes(&second.root)], seen: HashSet::new() };
-    search.run(&first.root, &second.root, &mut found);
+    search.run(NodeItem::root(&first.root), NodeItem::root(&second.root), &mut found);
     found
 }
 
+/// What the statements differ in: those of one alone, then those that have moved.
+fn compare_statements(first: &[String], second: &[String]) -> Vec<ModelDifference> {
+    let mut partners = Partners::new(first.len(), second.len());
+    partners.meet(first, second, &String::new());
+    let (alone, met): (Vec<Pair>, Vec<Pair>) =
+        partners.pairs().into_iter().partition(|pair| pair.places.contains(&None));
+    let told = |Pair { places: [a, b], moved }| ModelDifference {
+        path: String::new(),
+        first: a.map(|at| first[at].clone()),
+        second: b.map(|at| second[at].clone()),
+        moved,
+    };
+    alone.into_iter().chain(met.into_iter().filter(|pair| pair.moved.is_some())).map(told).collect()
+}
+
 struct ModelComparison {
-    hashes: [HashMap<usize, ModelHash>; 2],
+    hashes: [NodeHashes; 2],
     /// Pairs that have been compared: shared subtrees differ once.
-    seen: HashSet<(usize, usize)>,
+    seen: HashSet<(usize, usize, [ItemPlace; 2])>,
+}
+
+/// Two nodes to compare.
+struct NodePair<'a> {
+    nodes: [Option<NodeItem<'a>>; 2],
+    moved: Option<[usize; 2]>,
+    path: String,
 }
 
 impl ModelComparison {
-    fn run(mut self, first: &Tree, second: &Tree, found: &mut Vec<ModelDifference>) {
-        let mut stack = vec![(Some(first), Some(second), word(first))];
-        while let Some((a, b, path)) = stack.pop() {
+    fn run(mut self, first: NodeItem<'_>, second: NodeItem<'_>, found: &mut Vec<ModelDifference>) {
+        let nodes = [Some(first), Some(second)];
+        let mut stack = vec![NodePair { nodes, moved: None, path: first.name() }];
+        while let Some(NodePair { nodes, moved, path }) = stack.pop() {
             if found.len() >= MAX_DIFFERENCES {
                 return;
             }
-            let (Some(a), Some(b)) = (a, b) else {
-                let (first, second) = (a.map(node_words), b.map(node_words));
-                found.push(ModelDifference { path, first, second });
+            let [Some(a), Some(b)] = nodes else {
+                let [first, second] = nodes.map(|node| node.map(NodeItem::words));
+                found.push(ModelDifference { path, first, second, moved: None });
                 continue;
             };
-            let equal = self.hashes[0][&a.identity()] == self.hashes[1][&b.identity()];
-            if equal || !self.seen.insert((a.identity(), b.identity())) {
+            let (words, others) = (a.words(), b.words());
+            if moved.is_some() {
+                let (first, second) = (Some(words.clone()), Some(others.clone()));
+                found.push(ModelDifference { path: path.clone(), first, second, moved });
+            }
+            let equal = self.hashes[0].of(a) == self.hashes[1].of(b);
+            let ids = (a.tree.identity(), b.tree.identity(), [a.place, b.place]);
+            if equal || !self.seen.insert(ids) {
                 continue;
             }
-            let (words, others) = (node_words(a), node_words(b));
             if words != others {
-                found.push(ModelDifference { path: path.clone(), first: Some(words), second: Some(others) });
+                let (first, second) = (Some(words), Some(others));
+                found.push(ModelDifference { path: path.clone(), first, second, moved: None });
             }
-            let pairs = self.pairs(a.node().children(), b.node().children());
-            for (place, (a, b)) in pairs.into_iter().enumerate().rev() {
-                let name = a.or(b).map(word).unwrap_or_default();
-                stack.push((a, b, format!("{path}.{place}/{name}")));
-            }
+            stack.extend(self.below(a, b, &path).into_iter().rev());
         }
     }
 
-    /// Children that belong together, in the order of the first ones.
-    fn pairs<'a>(&self, first: &'a [Tree], second: &'a [Tree]) -> Vec<(Option<&'a Tree>, Option<&'a Tree>)> {
-        let mut partners: Vec<Option<usize>> = vec![None; first.len()];
-        let mut taken = vec![false; second.len()];
-        let hash = |side: usize, tree: &Tree| format!("{}", self.hashes[side][&tree.identity()]);
-        let name = |tree: &Tree| tree.node().name().map(str::to_owned).unwrap_or_default();
-        let kind = |tree: &Tree| kind(tree);
-        let keys: [[Vec<String>; 2]; 3] = [
-            [
-                first.iter().map(|tree| hash(0, tree)).collect(),
-                second.iter().map(|tree| hash(1, tree)).collect(),
-            ],
-            [first.iter().map(name).collect(), second.iter().map(name).collect()],
-            [first.iter().map(kind).collect(), second.iter().map(kind).collect()],
-        ];
-        for [of, others] in &keys {
-            let mut waiting: HashMap<&str, Vec<usize>> = HashMap::new();
-            for (place, key) in others.iter().enumerate().rev().filter(|(place, _)| !taken[*place]) {
-                waiting.entry(key).or_default().push(place);
-            }
-            for (place, key) in of.iter().enumerate() {
-                if partners[place].is_none() && !key.is_empty() {
-                    partners[place] = waiting.get_mut(key.as_str()).and_then(Vec::pop);
-                    partners[place].into_iter().for_each(|partner| taken[partner] = true);
-                }
+    /// The children of two nodes that are to be compared: not those that are equal, and in place.
+    fn below<'a>(&self, a: NodeItem<'a>, b: NodeItem<'a>, path: &str) -> Vec<NodePair<'a>> {
+        let [first, second]: [Vec<NodeItem<'a>>; 2] = [a, b].map(|node| node.children().collect());
+        let pairs = pairs(&self.hashes, &first, &second);
+        let mut below = Vec::new();
+        for (place, Pair { places: [a, b], moved }) in pairs.into_iter().enumerate() {
+            let nodes = [a.map(|at| first[at]), b.map(|at| second[at])];
+            let equal = match nodes {
+                [Some(a), Some(b)] => self.hashes[0].of(a) == self.hashes[1].of(b),
+                _ => false,
+            };
+            if let (Some(named), true) = (nodes[0].or(nodes[1]), !equal || moved.is_some()) {
+                let path = format!("{path}.{place}/{}", named.name());
+                below.push(NodePair { nodes, moved, path });
             }
         }
-        let pair = |(tree, partner): (&'a Tree, &Option<usize>)| (Some(tree), partner.map(|at| &second[at]));
-        let mut pairs: Vec<_> = first.iter().zip(&partners).map(pair).collect();
-        pairs.extend(
-            second.iter().zip(&taken).filter(|(_, taken)| !**taken).map(|(tree, _)| (None, Some(tree))),
-        );
-        pairs
+        below
     }
 }
 
-/// The word for a node: its name, or that of its kind.
-fn word(tree: &Tree) -> String {
-    tree.node().name().map_or_else(|| kind(tree), str::to_owned)
-}
-
-/// The first word of a node.
-fn kind(tree: &Tree) -> String {
-    match tree.node().written() {
-        Written::Attribute { name, .. } => name.to_string(),
-        _ => node_words(tree).split([' ', '{', '(']).next().unwrap_or_default().to_owned(),
+/// The children of two nodes as pairs.
+fn pairs(hashes: &[NodeHashes; 2], first: &[NodeItem<'_>], second: &[NodeItem<'_>]) -> Vec<Pair> {
+    let hash = |side: usize, nodes: &[NodeItem<'_>]| -> Vec<Option<ModelHash>> {
+        nodes.iter().map(|&node| Some(hashes[side].of(node))).collect()
+    };
+    let name = |nodes: &[NodeItem<'_>]| -> Vec<String> {
+        nodes.iter().map(|node| node.tree.node().name().map(str::to_owned).unwrap_or_default()).collect()
+    };
+    let kind = |nodes: &[NodeItem<'_>]| -> Vec<String> { nodes.iter().map(|node| node.kind()).collect() };
+    let mut partners = Partners::new(first.len(), second.len());
+    partners.meet(&hash(0, first), &hash(1, second), &None);
+    if partners.is_open() {
+        partners.meet(&name(first), &name(second), &String::new());
+        partners.meet(&kind(first), &kind(second), &String::new());
     }
+    partners.pairs()
 }

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! hash(node)  = FNV("words and numbers of the node as printed", hash(child 0), hash(child 1), ..)
-//! hash(model) = FNV("jbt hash 1", statements as printed, hash(root))
+//! hash(part)  = FNV("part \"NAME\"", hash(child 0), hash(child 1), ..)
+//! hash(model) = FNV("jbt hash 2", statements as printed, hash(root))
 //! ```
 //!
-//! Names of nodes, comments, places in a text and what is shared do not count; parameters do, with their
-//! names and defaults. The hash is FNV-1a of 128 bits (Fowler, Noll and Vo; RFC 9923). It tells models apart
-//! and is no protection against those who look for two with one hash.
+//! Names of nodes, comments, places in a text and what is shared do not count. Names of parts do, and so does
+//! the order of children and of statements, and parameters with their names and defaults. The hash is FNV-1a
+//! of 128 bits (Fowler, Noll and Vo; RFC 9923). It tells models apart and is no protection against those who
+//! look for two with one hash. In version 1 a part was hashed as a union, and `empty` as `expression { 0 }`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -16,14 +18,14 @@ use jbt_model::model::Model;
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
 
-use crate::item::{node_words, statements};
+use crate::item::{ItemPlace, NodeItem, node_words, statements};
 
 /// The hash of a model, or of a part of one: see [`hash`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct ModelHash(u128);
 
 /// What the hash depends on besides the model. It changes when equal models would have other hashes.
-pub const HASH_VERSION: u32 = 1;
+pub const HASH_VERSION: u32 = 2;
 
 impl ModelHash {
     const PRIME: u128 = (1 << 88) + 0x13b;
@@ -56,7 +58,7 @@ impl fmt::Display for ModelHash {
 }
 
 /// The hash of a model. Equal models have equal hashes, whatever their nodes are called and whichever of
-/// them are shared. It is FNV-1a of 128 bits over what nodes say when they are printed; comments and places
+/// them are shared; parts have equal names. It is FNV-1a of 128 bits over what nodes say when they are printed; comments and places
 /// in a text do not count, parameters do.
 ///
 /// ```
@@ -73,20 +75,52 @@ pub fn hash(model: &Model) -> ModelHash {
     let mut all = ModelHash::start();
     all.add(format!("jbt hash {HASH_VERSION}").as_bytes());
     statements(model).iter().for_each(|statement| all.add(statement.as_bytes()));
-    all.add(&hashes(&model.root)[&model.root.identity()].0.to_le_bytes());
+    all.add(&NodeHashes::new(&model.root).root.0.to_le_bytes());
     all
 }
 
-/// The hashes of all nodes below a root, by their identities.
-pub(crate) fn hashes(root: &Tree) -> HashMap<usize, ModelHash> {
-    let mut hashes: HashMap<usize, ModelHash> = HashMap::new();
-    for tree in root.postfix(Visit::Nodes) {
-        let mut hash = ModelHash::start();
-        hash.add(node_words(tree).as_bytes());
-        for child in tree.node().children() {
-            hash.add(&hashes[&child.identity()].0.to_le_bytes());
+/// The hashes of all nodes below a root.
+pub(crate) struct NodeHashes {
+    root: ModelHash,
+    /// Those of nodes that are neither root nor part, by their identities.
+    nodes: HashMap<usize, ModelHash>,
+    /// Those of parts.
+    parts: HashMap<usize, ModelHash>,
+}
+
+impl NodeHashes {
+    /// Hashes each node once.
+    pub(crate) fn new(root: &Tree) -> Self {
+        let mut nodes: HashMap<usize, ModelHash> = HashMap::new();
+        for tree in root.postfix(Visit::Nodes) {
+            let children = tree.node().children().iter().map(|child| nodes[&child.identity()]);
+            let hash = of_node(&node_words(tree), children);
+            nodes.insert(tree.identity(), hash);
         }
-        hashes.insert(tree.identity(), hash);
+        let mut hashes = Self { root: nodes[&root.identity()], nodes, parts: HashMap::new() };
+        let root = NodeItem::root(root);
+        for part in root.children().filter(|child| child.place == ItemPlace::Part) {
+            let hash = of_node(&part.words(), part.children().map(|child| hashes.of(child)));
+            hashes.parts.insert(part.tree.identity(), hash);
+        }
+        hashes.root = of_node(&root.words(), root.children().map(|child| hashes.of(child)));
+        hashes
     }
-    hashes
+
+    /// That of a node.
+    pub(crate) fn of(&self, item: NodeItem<'_>) -> ModelHash {
+        match item.place {
+            ItemPlace::Root => self.root,
+            ItemPlace::Part => self.parts[&item.tree.identity()],
+            ItemPlace::Below => self.nodes[&item.tree.identity()],
+        }
+    }
+}
+
+/// The hash of a node with these words, over children with these hashes.
+fn of_node(words: &str, children: impl Iterator<Item = ModelHash>) -> ModelHash {
+    let mut hash = ModelHash::start();
+    hash.add(words.as_bytes());
+    children.for_each(|child| hash.add(&child.0.to_le_bytes()));
+    hash
 }

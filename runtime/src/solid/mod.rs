@@ -22,6 +22,7 @@ mod gap;
 mod halves;
 mod measure;
 mod membership;
+mod overlap;
 mod parts;
 
 pub use bounds::{BoundsError, TightBounds};

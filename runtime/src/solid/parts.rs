@@ -7,30 +7,23 @@
 //! ```
 //!
 //! What is said to be apart or to overlap is proven by ranges of both fields over boxes, so it holds for
-//! every value that a kernel gives there. A box is out of question where one of the fields is below the
-//! iso-value all over the box grown by the tolerance: two points of the parts that are nearer to each other
-//! than that would have the point between them in a box that is not.
+//! every value that a kernel gives there: see `overlap`.
 
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::Intersection;
 use jbt_model::diagnostic::Diagnostics;
 
 use super::gap::{Gap, gap};
-use super::halves::{halves, ranges};
-use super::{Measure, MeasureError, Measures, RegionError, Solid, center, cut};
-use crate::boxes::{Box3, Divisible as _};
+use super::overlap::{LeftBoxes, PairFound, PairSearch, grown};
+use super::{Measure, MeasureError, Measures, RegionError, Solid, center};
+use crate::boxes::Box3;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::points::Points;
 use crate::polygonize::Fineness;
-use crate::prune::Region;
-use crate::support::around_in_f32;
-
-/// Boxes that are open at once at most, while two parts are compared: with more, the answer is that of the
-/// boxes so far.
-const MAX_OPEN: usize = 1 << 14;
+use crate::support::{NoBox, around_in_f32};
 
 /// Cells along the longest side of what two parts have in common, for its volume.
 const VOLUME_CELLS: usize = 64;
@@ -51,6 +44,8 @@ pub struct PartSolids {
     compiler: Compiler,
     tree: CheckedTree,
     solids: Vec<(String, Solid)>,
+    /// Where parts are looked at, if not all over.
+    region: Option<Box3>,
 }
 
 brief_debug!(PartSolids, "PartSolids", this: parts = this.solids.len());
@@ -64,17 +59,27 @@ pub enum Relation {
         /// The tolerance that was asked for.
         more_than: f64,
     },
-    /// Neither is proven: there may be points of both in boxes of this size. What they have in common is
-    /// thinner than about that, or they are as near.
+    /// Neither is proven, down to boxes no larger than the tolerance: in those that are left, points of one
+    /// may be as near as the tolerance to points of the other, or in both. No middle of a box is in both, so
+    /// no ball is whose diameter is twice the side of the boxes, but for what is due to rounding.
     Touching {
         /// The longest side of the boxes that are left.
         within: f64,
-        /// The middle of one of them, in the world.
+        /// A point of one of them, in the world: where the smaller of both fields is largest.
+        at: [f64; 3],
+    },
+    /// Neither is proven, and the work was used up before boxes were as small as the tolerance: points may be
+    /// as near as that to each other, or in both.
+    Undecided {
+        /// No ball of this diameter is in both, but for what is due to rounding: twice the longest side of the
+        /// boxes that are left.
+        thinner_than: f64,
+        /// A point of one of them, in the world: where the smaller of both fields is largest.
         at: [f64; 3],
     },
     /// Proven: a box is inside of both.
     Overlapping {
-        /// A point of the largest such box, in the world.
+        /// The middle of such a box, in the world.
         at: [f64; 3],
         /// What they have in common.
         volume: super::Volume,
@@ -147,7 +152,15 @@ impl PartSolids {
             Ok((part.name.to_owned(), Solid::new(compiler, &tree.part(index))?))
         };
         let solids = tree.parts().iter().enumerate().map(solid).collect::<Result<_, CompileError>>()?;
-        Ok(Self { compiler: compiler.clone(), tree: tree.clone(), solids })
+        Ok(Self { compiler: compiler.clone(), tree: tree.clone(), solids, region: None })
+    }
+
+    /// The same parts, of which only what is in a box is looked at: unbounded ones need one. Corners are those
+    /// of the world.
+    #[must_use]
+    pub fn within(self, region: Box3<f64>) -> Self {
+        let origin = self.tree.origin();
+        Self { region: Some(region.map(|corner| origin.rounded(corner))), ..self }
     }
 
     /// How many there are.
@@ -194,7 +207,7 @@ impl PartSolids {
     }
 
     /// What two parts have to do with each other, where points that are as near as the tolerance, in units of
-    /// the model, count as touching.
+    /// the model, count as touching. A smaller tolerance finds thinner overlaps and gaps, and takes longer.
     ///
     /// The volume of what they have in common is that of 64 cells along its longest side.
     ///
@@ -204,11 +217,15 @@ impl PartSolids {
         let tolerance = checked(tolerance)?;
         let apart = Relation::Apart { more_than: f64::from(tolerance) };
         let Some(common) = self.common(a, b, tolerance)? else { return Ok(apart) };
-        let mut search = PairSearch { solids: [self.solid(a), self.solid(b)], tolerance };
-        match search.run(common)? {
+        match PairSearch::new([self.solid(a), self.solid(b)], common, tolerance).run()? {
             PairFound::Nothing => Ok(apart),
-            PairFound::Left(bounds) => {
-                Ok(Relation::Touching { within: f64::from(bounds.longest_side()), at: self.world(&bounds) })
+            PairFound::Left(LeftBoxes { longest, are_small, best }) => {
+                let (longest, at) = (f64::from(longest), self.world(best));
+                Ok(if are_small {
+                    Relation::Touching { within: longest, at }
+                } else {
+                    Relation::Undecided { thinner_than: 2.0 * longest, at }
+                })
             }
             PairFound::Both(bounds) => {
                 let roots = self.tree.parts();
@@ -218,7 +235,7 @@ impl PartSolids {
                 let mut volume = solid.measure(&settings).run()?.volume;
                 // The box that proves it counts, however small it is.
                 volume.low = volume.low.max(super::measure::volume_of(&bounds));
-                Ok(Relation::Overlapping { at: self.world(&bounds), volume })
+                Ok(Relation::Overlapping { at: self.world(center(&bounds)), volume })
             }
         }
     }
@@ -256,133 +273,52 @@ impl PartSolids {
     /// # Errors
     /// Those of [`Solid::measure`]; an empty part has the volume 0.
     pub fn measure(&self, part: usize, fineness: Fineness) -> Result<Measures, MeasureError> {
-        match self.solid(part).measure(&Measure { region: None, fineness }).run() {
+        let region = match (self.region, self.bounds(part)) {
+            (Some(_), Ok(None)) => return Ok(Measures::default()),
+            (Some(_), Ok(bounds)) => bounds,
+            (None, _) | (_, Err(_)) => None,
+        };
+        match self.solid(part).measure(&Measure { region, fineness }).run() {
             Err(MeasureError::Region(RegionError::Empty)) => Ok(Measures::default()),
             measured => measured,
         }
     }
 
-    /// A box around the support of a part; `None` if it is empty.
+    /// A box around the support of a part, as far as it is looked at; `None` if it is empty.
     fn bounds(&self, part: usize) -> Result<Option<Box3>, PartError> {
-        match around_in_f32(self.solid(part).tree()) {
-            Ok(bounds) => Ok(Some(bounds)),
-            Err(crate::support::NoBox::Empty) => Ok(None),
-            Err(crate::support::NoBox::Unbounded) => {
-                Err(PartError::Unbounded { name: self.name(part).to_owned() })
+        let bounds = match (around_in_f32(self.solid(part).tree()), self.region) {
+            (Ok(bounds), Some(region)) => common(&bounds, &region),
+            (Ok(bounds), None) => bounds,
+            (Err(NoBox::Empty), _) => return Ok(None),
+            (Err(NoBox::Unbounded), Some(region)) => region,
+            (Err(NoBox::Unbounded), None) => {
+                return Err(PartError::Unbounded { name: self.name(part).to_owned() });
             }
-        }
+        };
+        Ok(bounds.is_full().then_some(bounds))
     }
 
     /// Where both may have points that are as near as the tolerance.
     fn common(&self, a: usize, b: usize, tolerance: f32) -> Result<Option<Box3>, PartError> {
         let (Some(first), Some(second)) = (self.bounds(a)?, self.bounds(b)?) else { return Ok(None) };
-        let (first, second) = (grown(&first, tolerance), grown(&second, tolerance));
-        let common = Box3 {
-            low: [0, 1, 2].map(|axis| first.low[axis].max(second.low[axis])),
-            high: [0, 1, 2].map(|axis| first.high[axis].min(second.high[axis])),
-        };
+        let common = common(&grown(&first, tolerance), &grown(&second, tolerance));
         Ok(common.is_full().then_some(common))
     }
 
-    fn world(&self, bounds: &Box3) -> [f64; 3] {
-        self.tree.origin().world(center(bounds).map(f64::from))
+    fn world(&self, point: [f32; 3]) -> [f64; 3] {
+        self.tree.origin().world(point.map(f64::from))
+    }
+}
+
+/// What is in both; not full if nothing is.
+fn common(a: &Box3, b: &Box3) -> Box3 {
+    Box3 {
+        low: [0, 1, 2].map(|axis| a.low[axis].max(b.low[axis])),
+        high: [0, 1, 2].map(|axis| a.high[axis].min(b.high[axis])),
     }
 }
 
 fn checked(tolerance: f64) -> Result<f32, PartError> {
     let rounded = tolerance as f32;
     if rounded > 0.0 && rounded.is_finite() { Ok(rounded) } else { Err(PartError::Tolerance { tolerance }) }
-}
-
-/// A box with so much around it, rounded outwards.
-fn grown(bounds: &Box3, margin: f32) -> Box3 {
-    Box3 {
-        low: bounds.low.map(|side| (side - margin).next_down().max(f32::MIN)),
-        high: bounds.high.map(|side| (side + margin).next_up().min(f32::MAX)),
-    }
-}
-
-/// What a search for points of both has found.
-enum PairFound {
-    /// There are none.
-    Nothing,
-    /// A box that may have some, of the smallest.
-    Left(Box3),
-    /// A box inside of both, of the largest.
-    Both(Box3),
-}
-
-/// Boxes that may have points of both, level by level.
-struct PairSearch<'a> {
-    solids: [&'a Solid; 2],
-    tolerance: f32,
-}
-
-/// A box, and what is known of it grown by the tolerance, for both fields.
-struct PairBox {
-    bounds: Box3,
-    regions: [Region; 2],
-}
-
-impl PairSearch<'_> {
-    fn run(&mut self, whole: Box3) -> Result<PairFound, EvalError> {
-        let around = grown(&whole, self.tolerance);
-        let region = |solid: &Solid| solid.pruner.region(around);
-        let regions = [region(self.solids[0])?, region(self.solids[1])?];
-        let mut open = vec![PairBox { bounds: whole, regions }];
-        while let Some(first) = open.first() {
-            let size = first.bounds.longest_side();
-            if size <= self.tolerance || open.len() > MAX_OPEN {
-                return Ok(PairFound::Left(first.bounds));
-            }
-            let mut next = Vec::new();
-            for parent in &open {
-                let parts = cut(&parent.bounds, halves(&parent.bounds));
-                if parts.len() == 1 {
-                    return Ok(PairFound::Left(parent.bounds));
-                }
-                if let Some(both) = self.expand(parent, &parts, &mut next)? {
-                    return Ok(PairFound::Both(both));
-                }
-            }
-            open = next;
-        }
-        Ok(PairFound::Nothing)
-    }
-
-    /// Opens the parts of a box that may have points of both; one that is inside of both ends the search.
-    fn expand(
-        &self,
-        parent: &PairBox,
-        parts: &[Box3],
-        next: &mut Vec<PairBox>,
-    ) -> Result<Option<Box3>, EvalError> {
-        let around: Vec<Box3> = parts.iter().map(|part| grown(part, self.tolerance)).collect();
-        let mut is_open = vec![true; parts.len()];
-        for (solid, region) in self.solids.iter().zip(&parent.regions) {
-            let ranges = ranges(solid, region, &around)?;
-            for (open, range) in is_open.iter_mut().zip(ranges) {
-                *open &= solid.side(range) != Some(false);
-            }
-        }
-        let pick = |boxes: &[Box3]| -> Vec<Box3> {
-            boxes.iter().zip(&is_open).filter(|(_, open)| **open).map(|(bounds, _)| *bounds).collect()
-        };
-        let (parts, around) = (pick(parts), pick(&around));
-        let mut is_inside = vec![true; parts.len()];
-        for (solid, region) in self.solids.iter().zip(&parent.regions) {
-            for (inside, range) in is_inside.iter_mut().zip(ranges(solid, region, &parts)?) {
-                *inside &= solid.side(range) == Some(true);
-            }
-        }
-        if let Some(place) = is_inside.iter().position(|inside| *inside) {
-            return Ok(Some(parts[place]));
-        }
-        let [mut first, mut second] = [Vec::new(), Vec::new()];
-        self.solids[0].pruner.narrow(&parent.regions[0], &around, &mut first)?;
-        self.solids[1].pruner.narrow(&parent.regions[1], &around, &mut second)?;
-        let regions = first.into_iter().zip(second);
-        next.extend(parts.iter().zip(regions).map(|(&bounds, (a, b))| PairBox { bounds, regions: [a, b] }));
-        Ok(None)
-    }
 }
