@@ -121,7 +121,10 @@ impl SceneDifferences {
 
     fn json(&self) -> Value {
         let item = |ModelDifference { path, first, second, moved }: &ModelDifference| json!({ "path": path, "first": first, "second": second, "moved": moved });
-        let place = |DifferingPlace { bounds, at, most, .. }: &DifferingPlace| json!({ "box": [bounds.low, bounds.high].concat(), "at": at, "most": most });
+        let place = |DifferingPlace { bounds, at, most, .. }: &DifferingPlace| {
+            let corners = [bounds.low, bounds.high].concat();
+            json!({ "box": corners, "at": at, "most": most })
+        };
         let places = self.places.as_ref().map(|places| places.iter().map(place).collect::<Vec<_>>());
         let hashes = self.hashes.map(|hash| hash.to_string());
         json!({
