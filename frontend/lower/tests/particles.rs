@@ -4,18 +4,20 @@ use fastrand::Rng;
 use jbt_ir::Rows;
 use jbt_ir::limits::MAX_ERRORS;
 use jbt_lower::{Lowered, lower};
+use jbt_model::attribute::{AttributeGroup, Mixing};
 use jbt_model::builder::{param, particles, point};
 use jbt_model::check::CheckedTree;
+use jbt_model::model::Model;
 use jbt_model::query::Query;
 use jbt_model::tree::Tree;
 use jbt_testkit::scene::{checked, tree};
 
-/// Particles of different sizes.
+/// Coloured particles of different sizes.
 fn cloud(seed: u64, count: usize) -> Tree {
     let mut rng = Rng::with_seed(seed);
     let at: Vec<[f32; 3]> = (0..count).map(|_| std::array::from_fn(|_| 2.0 * rng.f32() - 1.0)).collect();
     let radius: Vec<f32> = (0..count).map(|_| 0.2 + 0.5 * rng.f32()).collect();
-    particles(at, radius)
+    particles(at, radius).colors((0..3 * count).map(|_| rng.f32()).collect::<Vec<f32>>())
 }
 
 /// A cloud of these strengths, again and again.
@@ -36,8 +38,19 @@ fn assert_same_rows(name: &str, [a, b]: [&Lowered; 2]) {
     }
 }
 
+/// The model and that of points, with a group more: a number of the leaf whose field is the largest.
 fn twins(written: &Tree) -> [CheckedTree; 2] {
-    [checked(written), checked(written.as_points())]
+    let heat = AttributeGroup {
+        name: "heat".into(),
+        default: vec![0.25],
+        mixing: Mixing::Dominant,
+        ..AttributeGroup::color()
+    };
+    [written.clone(), written.as_points()].map(|tree| {
+        let mut model = Model::new(tree);
+        model.attributes.push(heat.clone());
+        model.check().expect("a good model")
+    })
 }
 
 #[test]
@@ -50,6 +63,11 @@ fn programs_and_rows_are_those_of_points() {
         ("of strength 1 at last", signed(9, &[0.5, -0.75, 1.0])),
         ("of strength 1 at first", signed(10, &[1.0, 1.0, 0.5])),
         ("beside points", Tree::sum([point([0.0; 3], 0.5), signed(8, &[1.0, 0.5]), point([0.3; 3], 0.6)])),
+        ("of groups, of which one dominates", {
+            let heat = |count: usize| (0..count).map(|index| index as f32).collect::<Vec<f32>>();
+            let hot = signed(8, &[1.0, 0.5]).values("heat", 1, heat(8));
+            Tree::sum([point([0.0; 3], 0.7).attribute("heat", &[9.0]), hot, point([0.3; 3], 0.6)])
+        }),
         ("of a union", signed(8, &[1.0, 0.5]) | point([0.3; 3], 0.6) | cloud(5, 4)),
         ("moved", signed(7, &[1.0, 0.5]).rotate([1, 0, 0], 30.0).scale(0.8).translate([0.1, 0.2, 0.3])),
         ("skewed", cloud(6, 7).scale_axes([0.5, 1.0, 1.5])),
@@ -74,11 +92,11 @@ fn rows_of_many_particles_are_those_of_points() {
 
 #[test]
 fn numbers_that_leave_f32_are_those_of_a_particle() {
-    let text = "scale 1e-10 { particles { at ((0 0 0) (1 0 0) (2 0 0) (3 0 0)) radius (1 1 1e-15 1) } }";
+    let text = "scale 1e-10 { particles { at ((0 0 0) (1 0 0) (2 0 0) (3 0 0)) radius (1 1e-15 1e-15 1) } }";
     let errors = lower(&tree(text), Query::FIELD).expect_err("1e50 is none in f32");
     assert_eq!(errors.len(), 1, "{errors:?}");
     assert!(
-        errors[0].message.contains("a number derived from particle 2 leaves the range of f32: -9.99"),
+        errors[0].message.contains("a number derived from particle 1 leaves the range of f32: -9.99"),
         "{errors:?}"
     );
     let speck = |x: usize| point([x as f64, 0.0, 0.0], 1e-15).scale(1e-10);
