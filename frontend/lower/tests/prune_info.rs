@@ -5,9 +5,10 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Table, Tables, Verified, interpret, verify};
-use jbt_lower::prune_info::{LARGEST_COORDINATE, Rule, Support, SupportSpace};
+use jbt_lower::prune_info::{ContestKind, LARGEST_COORDINATE, Rule, Support, SupportSpace};
 use jbt_lower::{RangeFunction, lower_ranges};
 use jbt_model::check::CheckedTree;
+use jbt_model::combine::Extreme;
 use jbt_model::falloff::Falloff;
 use jbt_model::kind::{NodeKind, Primitive};
 use jbt_model::model::Model;
@@ -195,6 +196,47 @@ fn a_turned_segment_has_its_ends_and_not_a_turned_box() {
     // The corner of the box around it that a box would have, and a rounded one has not.
     assert!(support.misses([-0.08, -0.08, 0.0], [-0.08, -0.08, 0.0]));
     assert!(!support.misses([-0.05, -0.05, 0.0], [-0.05, -0.05, 0.0]));
+}
+
+#[test]
+fn what_could_overflow_is_bounded_by_nothing() {
+    // In the coordinates of the smallest leaf, squares of those of the farthest points are no numbers.
+    for (scale, bounded) in [("1e-6", true), ("1e-14", true), ("1e-15", false)] {
+        for place in ["(0 0 0)", "(1 2 3)"] {
+            let text = format!("jbt 1 translate {place} {{ scale {scale} {{ point {{ radius 1 }} }} }}");
+            assert_eq!(support(&scene::tree(&text)) != Support::EVERYWHERE, bounded, "{text}");
+        }
+    }
+    // A map so flat that rounding may take any point anywhere.
+    for (flat, bounded) in [("0.1", true), ("1e-3", true), ("1e-9", false)] {
+        let below = "twist axis z rate 0.1 { point { radius 1 } }";
+        let text = format!("jbt 1 scale (1 1 {flat}) {{ rotate axis y degrees 30 {{ {below} }} }}");
+        assert_eq!(support(&scene::tree(&text)) != Support::EVERYWHERE, bounded, "{text}");
+    }
+    // Slopes of what weighs a warp multiply.
+    for (count, bounded) in [(1, true), (2, true), (3, false)] {
+        let (before, after) = ("twist axis z rate 0.1 weighted { ", " point { radius 4 } }");
+        let below = "sum { point { radius 1 } point { radius 2 } }";
+        let text = format!("jbt 1 {} {below} {}", before.repeat(count), after.repeat(count));
+        let info = lower_ranges(&scene::tree(&text)).expect("it can be lowered").info;
+        let points = info.tables.values().last().expect("there are tables");
+        assert_eq!(points.supports[..] != [Support::EVERYWHERE; 2], bounded, "{text}: {points:?}");
+    }
+}
+
+#[test]
+fn contests_begin_where_their_operator_does() {
+    let contest = |text: &str| {
+        let ranges = lower_ranges(&scene::tree(&format!("jbt 1 {text}"))).expect("it can be lowered");
+        let [contest] = &ranges.info.contests[..] else { panic!("{:?}", ranges.info.contests) };
+        (contest.extreme, contest.kind)
+    };
+    let positive = "point { radius 1 } point { radius 2 }";
+    let negative = "point { radius 1 } point { radius 2 strength -1 }";
+    let all = |extreme, start| (extreme, ContestKind::All(start));
+    assert_eq!(contest(&format!("union {{ {positive} }}")), all(Extreme::Largest, Some(0.0)));
+    assert_eq!(contest(&format!("union {{ {negative} }}")), all(Extreme::Largest, None));
+    assert_eq!(contest(&format!("intersection {{ {positive} }}")), all(Extreme::Smallest, None));
 }
 
 /// Counts of what was left out, by reason.
