@@ -160,6 +160,40 @@ fn a_tree_is_silent_outside_of_its_support() {
     assert!(tried > 15_000, "{tried} points");
 }
 
+/// Where a map goes far, its rounding takes a good part of a small leaf.
+#[test]
+fn small_leaves_far_away_are_silent_outside_of_their_supports() {
+    let mut rng = Rng::with_seed(6);
+    let mut tried = 0;
+    for index in 0..400 {
+        // Two that are far apart, so that coordinates count from the world.
+        let mut leaf = |side: f64| {
+            let to = side * (DVec3::splat(700.0) + DVec3::from(vector(&mut rng, 300.0)));
+            let flat = DMat3::from_diagonal(DVec3::new(1.0, [1.0, 0.1, 0.01][rng.usize(..3)], 1.0));
+            let turned =
+                DMat3::from_rotation_x(6.0 * rng.f64()) * flat * DMat3::from_rotation_z(6.0 * rng.f64());
+            let map = NodeKind::Affine(DAffine3::from_mat3_translation(turned, to));
+            let (at, radius) = (DVec3::from(vector(&mut rng, 0.1)), 1e-3 * (0.5 + rng.f64()));
+            let skeleton = Skeleton::from(Point { at });
+            let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius, strength: 1.0 };
+            Tree::new(map, vec![Tree::new(NodeKind::Primitive(leaf), Vec::new())])
+        };
+        let tree = Model::new(Tree::sum([leaf(1.0), leaf(-1.0)])).check().expect("its numbers are ordinary");
+        assert!(tree.origin().is_world());
+        let ranges = lower_ranges(&tree).expect("it can be lowered");
+        let (program, tables) = compiled(&tree, Query::FIELD);
+        for support in ranges.info.tables.values().skip(1).flat_map(|table| table.supports.iter()) {
+            for _ in 0..40 {
+                let Some(point) = outside(support, &mut rng) else { continue };
+                tried += 1;
+                let field = interpret::run(&program, &tables, &mut Scalar, &point)[0];
+                assert_eq!(field.to_bits(), 0, "tree {index}: {field} at {point:?}, outside of {support:?}");
+            }
+        }
+    }
+    assert!(tried > 20_000, "{tried} points");
+}
+
 #[test]
 fn supports_of_points_are_no_larger_than_they_have_to_be() {
     let (mut rng, mut random) = (Rng::with_seed(4), Random::new(4, 4));

@@ -174,7 +174,7 @@ mod tests {
     use crate::compiler::Compiler;
     use crate::kernel::Engine;
     use fastrand::Rng;
-    use jbt_model::builder::{point, segment};
+    use jbt_model::builder::{param, point, segment};
     use jbt_model::model::Model;
     use jbt_model::tree::Tree;
 
@@ -182,8 +182,8 @@ mod tests {
         std::array::from_fn(|_| 8.0 * rng.f64() - 4.0)
     }
 
-    fn points(rng: &mut Rng, count: usize) -> Tree {
-        Tree::sum((0..count).map(|_| point(place(rng), 0.1 + 0.3 * rng.f64())))
+    fn points(rng: &mut Rng, count: usize) -> Vec<Tree> {
+        (0..count).map(|_| point(place(rng), 0.1 + 0.3 * rng.f64())).collect()
     }
 
     fn pruner(tree: Tree) -> Pruner {
@@ -241,7 +241,7 @@ mod tests {
             let mut rng = Rng::with_seed(1);
             let all = points(&mut rng, 5000);
             let segments = (0..count).map(|_| segment(place(&mut rng), place(&mut rng), 0.1));
-            let tree = Tree::sum([all].into_iter().chain(segments));
+            let tree = Tree::sum(all.into_iter().chain(segments));
             let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
             ask(&pruner, &mut rng);
             let made = trees(&pruner);
@@ -252,18 +252,52 @@ mod tests {
     }
 
     #[test]
-    fn trees_find_the_rows_of_all_owners_and_follow_edits() {
+    fn trees_find_the_rows_of_all_owners() {
         let mut rng = Rng::with_seed(2);
-        let mut sums: Vec<Tree> = (0..100).map(|_| points(&mut rng, 60)).collect();
-        let before = pruner(Tree::union(sums.clone()));
+        let tree = Tree::union((0..100).map(|_| Tree::sum(points(&mut rng, 60))));
+        let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
+        ask(&pruner, &mut rng);
+        assert!(trees(&pruner).contains(&true));
+        assert_as_passes(&pruner, &fresh, &mut rng);
+    }
+
+    #[test]
+    fn trees_follow_edits() {
+        let mut rng = Rng::with_seed(3);
+        let moved = point([param("x", 0.5), 0.0.into(), 0.0.into()], 3.0);
+        let model = Model::new(Tree::sum([moved].into_iter().chain(points(&mut rng, 5000))));
+        let tree = model.check().expect("a good model");
+        let compiler = Compiler::for_engine(Engine::Lanes);
+        let before = Pruner::new(&compiler, &tree).expect("it compiles");
         ask(&before, &mut rng);
         let made = trees(&before);
         assert!(made.contains(&true), "{made:?}");
-        assert_as_passes(&before, &pruner(Tree::union(sums.clone())), &mut rng);
-        sums[70] = points(&mut rng, 60);
-        let edited = Model::new(Tree::union(sums.clone())).check().expect("a good model");
+        let edited = tree.with_parameters(&[("x", -2.0)]).expect("a good number");
         let now = before.updated(&edited).expect("it compiles");
         assert_eq!(trees(&now), made, "an edited model keeps its trees");
-        assert_as_passes(&now, &pruner(Tree::union(sums)), &mut rng);
+        assert_as_passes(&now, &Pruner::new(&compiler, &edited).expect("it compiles"), &mut rng);
+    }
+
+    #[test]
+    fn of_rows_that_reach_everywhere_those_that_win_are_found() {
+        let mut rng = Rng::with_seed(4);
+        let places: Vec<[f64; 3]> = (0..FEW + 1000).map(|_| place(&mut rng)).collect();
+        let reaching = |strength: f64| places.iter().map(move |&at| point(at, 20.0).strength(strength));
+        for tree in [Tree::union(reaching(1.0)), Tree::intersection(reaching(-1.0))] {
+            let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
+            let taken = |pruner: &Pruner, rng: &mut Rng| {
+                let before = pruner.counters().interval_evaluations;
+                let rows = region(pruner, small_box(rng)).rows();
+                assert!(rows < 300, "{rows} rows");
+                pruner.counters().interval_evaluations - before
+            };
+            let passes = taken(&pruner, &mut rng);
+            assert!(passes > FEW as u64, "a pass is a range for each row: {passes}");
+            ask(&pruner, &mut rng);
+            // Where hulls of rows are too wide, a pass is made after all.
+            let few = (0..30).filter(|_| taken(&pruner, &mut rng) < passes / 4).count();
+            assert!(few >= 10, "{few} of 30 boxes");
+            assert_as_passes(&pruner, &fresh, &mut rng);
+        }
     }
 }

@@ -194,7 +194,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(1);
         let count = 4096;
         let planes: Vec<Vec<f32>> =
-            (0..3).map(|_| (0..count).map(|_| 3.0 + 8.0 * rng.f32()).collect()).collect();
+            (0..3).map(|_| (0..count).map(|_| 8.0 * rng.f32() - 4.0).collect()).collect();
         // Numbers that are all the same say nothing; behind three others nobody looks.
         let same = vec![0.5; count];
         let numbers =
