@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Table, Tables, Verified, interpret, verify};
-use jbt_lower::prune_info::{ContestKind, LARGEST_COORDINATE, Rule, Support, SupportSpace};
+use jbt_lower::prune_info::{ContestKind, DecidedRows, LARGEST_COORDINATE, Rule, Support, SupportSpace};
 use jbt_lower::{RangeFunction, lower_ranges};
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::Extreme;
@@ -256,6 +256,19 @@ fn what_could_overflow_is_bounded_by_nothing() {
         let points = info.tables.values().last().expect("there are tables");
         assert_eq!(points.supports[..] != [Support::EVERYWHERE; 2], bounded, "{text}: {points:?}");
     }
+}
+
+/// Supports say nothing about a formula, whatever stands beside it: each row is an operand to decide on.
+#[test]
+fn rows_that_hold_formulas_may_be_decided_one_by_one() {
+    let decided = |part: &str| {
+        let row = |at: u32| format!("sum {{ {part} point {{ at ({at} 0 0) radius 1 }} }}");
+        let tree = scene::tree(&format!("jbt 1 union {{ {} {} }}", row(1), row(2)));
+        let info = lower_ranges(&tree).expect("it can be lowered").info;
+        info.decisions.iter().any(|decision| matches!(decision.rows, DecidedRows::Each { .. }))
+    };
+    assert!(decided("expression { x - y }"));
+    assert!(!decided("ring { ring_radius 1 radius 1 }"));
 }
 
 #[test]

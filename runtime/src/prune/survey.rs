@@ -121,8 +121,9 @@ mod tests {
         assert_eq!(pruner.many_ranges(&region, &[]).expect("no ranges"), (Vec::new(), 0));
         let (kept, evaluations) = pruner.split(&region, &boxes(), &|range| range[1] > 0.0).expect("parts");
         assert_eq!(evaluations, 12);
-        let mut parts = Vec::new();
+        let (mut parts, before) = (Vec::new(), pruner.counters());
         pruner.narrow(&region, &boxes(), &mut parts).expect("regions");
+        assert_eq!(pruner.counters(), before, "without probes nobody asks for ranges");
         let found: Vec<_> = kept.iter().map(|(lane, region)| (*lane, region.selection())).collect();
         let expected: Vec<_> = [0, 1, 2].map(|lane| (lane, parts[lane].selection())).to_vec();
         assert_eq!(found, expected);
