@@ -8,7 +8,8 @@
 //! vertices of one cell, of two parts, nearer than an eighth of the cell, with normals against each other
 //! ```
 //!
-//! Parts may have millions of vertices, so whoever joins or separates them asks now and then whether to go on.
+//! Parts may have millions of vertices, so whoever joins or separates them asks now and then whether to go
+//! on.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -149,7 +150,7 @@ impl Mesh {
         let cell = |position: [f32; 3]| -> [i64; 3] {
             std::array::from_fn(|axis| (f64::from(position[axis]) / spacing).floor() as i64)
         };
-        let mut known = CellVertices::of(&self.positions, &other.positions, cell, go_on)?;
+        let mut known = NearVertices::of(&self.positions, &other.positions, cell, go_on)?;
         if known.vertices.is_empty() {
             return Ok(());
         }
@@ -180,14 +181,14 @@ const VERTICES: usize = 1 << 12;
 
 /// Vertices of a mesh by their cells: lists of few links each, in one array, because many small ones could
 /// not be given back while somebody waits.
-struct CellVertices {
+struct NearVertices {
     /// The last vertex of each cell.
     last: HashMap<[i64; 3], u32>,
     /// Each with the place of the one before it in its cell. `None` where somebody has taken the vertex.
     vertices: Vec<(Option<u32>, Option<u32>)>,
 }
 
-impl CellVertices {
+impl NearVertices {
     /// Those of a mesh that are in a box of cells around another one.
     fn of<E>(
         positions: &[[f32; 3]],

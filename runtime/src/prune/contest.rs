@@ -370,7 +370,8 @@ mod tests {
         assert_eq!(beaten_of(&apart, None, f32::NEG_INFINITY), [0, 3]);
         assert_eq!(beaten_of(&apart, None, 2.75), [0, 2, 3], "something is above");
         assert_eq!(beaten_of(&apart, Some(4.0), f32::NEG_INFINITY), [0, 1, 2, 3]);
-        // Of equal ones the first wins: of rows in their order, of groups in that of the file, which is unknown.
+        // Of equal ones the first wins: of rows in their order, of groups in that of the file, which nobody
+        // knows here.
         let equal = [(0.0, 1.0, 0), (1.0, 1.0, 0), (0.5, 1.0, 0), (1.0, 1.0, 1)];
         assert_eq!(beaten_of(&equal, None, f32::NEG_INFINITY), [2]);
         assert_eq!(
