@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn vertices_that_touch_become_the_nearest_one() {
-        let (first, second) = (cloud(1, 4_000, -2.5), cloud(2, 9_000, 0.0));
+        let (first, second) = (cloud(1, 4_000, -2.5), cloud(2, 9_000, -1.5));
         let mut all = Mesh::default();
         add(&mut all, "first", first.clone());
         add(&mut all, "second", second.clone());
