@@ -113,7 +113,6 @@ fn a_shared_leaf_with_long_formulas_has_a_guard() {
         lower(&tree(&scene), Query::ATTRIBUTES).expect("it lowers").function.tables.len()
     };
     let plain = tables(0);
-    for n in 0..40 {}
     for steps in [1, 3, 15] {
         assert_eq!(tables(steps), plain, "{steps} steps");
     }
