@@ -296,6 +296,10 @@ mod tests {
     use super::super::indexed::Creases;
     use super::*;
 
+    /// Whether to go on, and work that asks that.
+    type Asked<'a> = &'a dyn Fn() -> Result<(), ()>;
+    type Work<'a> = &'a dyn Fn(Asked<'_>) -> Result<(), ()>;
+
     /// So many vertices at random in a box of 6^3 cells that begins at `low`, with normals up or down, each
     /// with a side.
     fn cloud(seed: u64, count: usize, low: f32) -> Mesh {
@@ -363,7 +367,7 @@ mod tests {
     #[test]
     fn joining_and_separating_ask_and_stop() {
         let (first, second) = (cloud(3, 70_000, -3.0), cloud(4, 150_000, -3.0));
-        let stopped_after = |most: usize, work: &dyn Fn(&dyn Fn() -> Result<(), ()>) -> Result<(), ()>| {
+        let stopped_after = |most: usize, work: Work<'_>| {
             let asked = Cell::new(0);
             let go_on = || {
                 asked.set(asked.get() + 1);
@@ -371,16 +375,16 @@ mod tests {
             };
             (work(&go_on), asked.get())
         };
-        let join = |go_on: &dyn Fn() -> Result<(), ()>| {
+        let join = |go_on: Asked<'_>| {
             let mut all = first.clone();
             all.add_part("second", second.clone(), &lattice(), go_on)
         };
         let mut both = Mesh::default();
         add(&mut both, "first", first.clone());
         add(&mut both, "second", second.clone());
-        let split = |go_on: &dyn Fn() -> Result<(), ()>| both.split_asking(go_on).map(drop);
+        let split = |go_on: Asked<'_>| both.split_asking(go_on).map(drop);
         // Of vertices, all are looked at three times where parts meet.
-        for (work, least) in [(&join as &dyn Fn(&dyn Fn() -> Result<(), ()>) -> _, 80), (&split, 25)] {
+        for (work, least) in [(&join as Work<'_>, 80), (&split, 25)] {
             let (done, asked) = stopped_after(usize::MAX, work);
             assert!(done.is_ok() && asked >= least, "asked {asked} times");
             for most in [0, 1, asked / 2, asked - 1] {
