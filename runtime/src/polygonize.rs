@@ -13,6 +13,7 @@ mod kernels;
 use jbt_model::diagnostic::Diagnostics;
 use std::time::{Duration, Instant};
 
+use jbt_ir::watch::{self, Stopped};
 use jbt_model::check::CheckedTree;
 
 use crate::boxes::Box3;
@@ -178,20 +179,21 @@ impl MeshCounters {
 
 impl Polygonized {
     /// The mesh as the first part of one.
-    fn into_part(mut self, name: &str) -> Self {
+    fn into_part(mut self, name: &str) -> Result<Self, Stopped> {
         let made = std::mem::take(&mut self.mesh);
         self.mesh = Mesh { origin: made.origin, orientation: made.orientation, ..Mesh::default() };
-        self.mesh.add_part(name, made, &self.lattice);
-        self
+        self.mesh.add_part(name, made, &self.lattice, &watch::go_on)?;
+        Ok(self)
     }
 
     /// Adds another part.
-    fn add_part(&mut self, name: &str, other: Self) {
-        self.mesh.add_part(name, other.mesh, &self.lattice);
+    fn add_part(&mut self, name: &str, other: Self) -> Result<(), Stopped> {
+        self.mesh.add_part(name, other.mesh, &self.lattice, &watch::go_on)?;
         self.report.add(other.report);
         self.counters.add(&other.counters);
         self.primitive_evaluations += other.primitive_evaluations;
         self.compile_time += other.compile_time;
+        Ok(())
     }
 }
 
@@ -222,6 +224,12 @@ pub enum PolygonizeError {
 impl JobError for PolygonizeError {
     fn told(self) -> Self {
         if self.kind() == ErrorKind::Cancelled { MeshError::Cancelled.into() } else { self }
+    }
+}
+
+impl From<Stopped> for PolygonizeError {
+    fn from(_: Stopped) -> Self {
+        MeshError::Cancelled.into()
     }
 }
 
@@ -333,8 +341,8 @@ impl Polygonize {
             let part_tree = compiled.compiler().compile(&tree.part(index));
             let made = self.mesh_over(&part_tree, lattice.clone(), &mut share)?;
             match &mut all {
-                Some(all) => all.add_part(part.name, made),
-                None => all = Some(made.into_part(part.name)),
+                Some(all) => all.add_part(part.name, made)?,
+                None => all = Some(made.into_part(part.name)?),
             }
         }
         match all {

@@ -28,6 +28,13 @@ use jbt_testkit::scene::tree;
 /// What is promised.
 const MOST: Duration = Duration::from_millis(50);
 
+/// Parts that touch, with edges: they are joined while they are meshed, and separated while they are written.
+const PARTS: &str = r#"jbt 1
+part "box" { difference { box { half (1 1 1) radius 0.2 } point { at (1.2 0 0) radius 1.2 } } }
+part "ball" { color (0 0 1) { point { at (1.2 0 0) radius 1.2 } } }
+part "cross" { union { box { center (-2 0 0) half (0.5 0.9 0.9) radius 0.2 } box { center (-2.4 0 0) half (0.5 0.5 1.2) radius 0.2 } } }
+"#;
+
 /// The gaps of all tasks.
 fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
     let compiler = Compiler::for_engine(engine);
@@ -109,7 +116,7 @@ impl Write for LookingWriter {
     }
 }
 
-/// The scenes: the examples, and some that are long programs.
+/// The scenes: the examples, one of parts, and some that are long programs.
 fn scenes() -> Vec<(String, String)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../examples");
     let files = fs::read_dir(folder).expect("the examples are there").filter_map(Result::ok);
@@ -124,6 +131,7 @@ fn scenes() -> Vec<(String, String)> {
         let terms: Vec<String> = (1..=count).map(|i| format!("sin({i}*x)")).collect();
         format!("expression within (-1 -1 -1) to (1 1 1) {{ {} }}", terms.join("+"))
     };
+    scenes.push(("parts".to_owned(), PARTS.to_owned()));
     scenes.push(("300 sines".to_owned(), sines(300)));
     scenes.push(("1,300 sines".to_owned(), sines(1300)));
     scenes.push(("12,000 sines".to_owned(), sines(12_000)));

@@ -99,6 +99,28 @@ fn computed_attributes_make_no_rows() {
     }
 }
 
+/// A leaf that is used twice is computed once: without a guard, because a guard costs as much as a leaf, unless
+/// its formulas take longer.
+#[test]
+fn a_shared_leaf_with_long_formulas_has_a_guard() {
+    let tables = |steps: usize| {
+        let terms = vec!["x"; steps + 1].join(" * ");
+        let scene = format!(
+            "jbt 1 let a = color expression {{ ({terms}, 0, 0) }} {{ point {{ radius 1 }} }}
+            union {{ sum {{ use a segment {{ from (0 0 0) to (1 0 0) radius 2 }} }}
+            sum {{ use a ring {{ ring_radius 1 radius 2 }} }} }}"
+        );
+        lower(&tree(&scene), Query::ATTRIBUTES).expect("it lowers").function.tables.len()
+    };
+    let plain = tables(0);
+    for steps in [1, 3, 15] {
+        assert_eq!(tables(steps), plain, "{steps} steps");
+    }
+    for steps in [16, 17, 31, 32, 40] {
+        assert_eq!(tables(steps), plain + 1, "{steps} steps");
+    }
+}
+
 /// Guards do not make a program deeper than it may be.
 #[test]
 fn a_long_chain_of_operators_has_some_guards() {

@@ -5,9 +5,10 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Table, Tables, Verified, interpret, verify};
-use jbt_lower::prune_info::{LARGEST_COORDINATE, Rule, Support, SupportSpace};
+use jbt_lower::prune_info::{ContestKind, DecidedRows, LARGEST_COORDINATE, Rule, Support, SupportSpace};
 use jbt_lower::{RangeFunction, lower_ranges};
 use jbt_model::check::CheckedTree;
+use jbt_model::combine::Extreme;
 use jbt_model::falloff::Falloff;
 use jbt_model::kind::{NodeKind, Primitive};
 use jbt_model::model::Model;
@@ -159,6 +160,40 @@ fn a_tree_is_silent_outside_of_its_support() {
     assert!(tried > 15_000, "{tried} points");
 }
 
+/// Where a map goes far, its rounding takes a good part of a small leaf.
+#[test]
+fn small_leaves_far_away_are_silent_outside_of_their_supports() {
+    let mut rng = Rng::with_seed(6);
+    let mut tried = 0;
+    for index in 0..400 {
+        // Two that are far apart, so that coordinates count from the world.
+        let mut leaf = |side: f64| {
+            let to = side * (DVec3::splat(700.0) + DVec3::from(vector(&mut rng, 300.0)));
+            let flat = DMat3::from_diagonal(DVec3::new(1.0, [1.0, 0.1, 0.01][rng.usize(..3)], 1.0));
+            let turned =
+                DMat3::from_rotation_x(6.0 * rng.f64()) * flat * DMat3::from_rotation_z(6.0 * rng.f64());
+            let map = NodeKind::Affine(DAffine3::from_mat3_translation(turned, to));
+            let (at, radius) = (DVec3::from(vector(&mut rng, 0.1)), 1e-3 * (0.5 + rng.f64()));
+            let skeleton = Skeleton::from(Point { at });
+            let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius, strength: 1.0 };
+            Tree::new(map, vec![Tree::new(NodeKind::Primitive(leaf), Vec::new())])
+        };
+        let tree = Model::new(Tree::sum([leaf(1.0), leaf(-1.0)])).check().expect("its numbers are ordinary");
+        assert!(tree.origin().is_world());
+        let ranges = lower_ranges(&tree).expect("it can be lowered");
+        let (program, tables) = compiled(&tree, Query::FIELD);
+        for support in ranges.info.tables.values().skip(1).flat_map(|table| table.supports.iter()) {
+            for _ in 0..40 {
+                let Some(point) = outside(support, &mut rng) else { continue };
+                tried += 1;
+                let field = interpret::run(&program, &tables, &mut Scalar, &point)[0];
+                assert_eq!(field.to_bits(), 0, "tree {index}: {field} at {point:?}, outside of {support:?}");
+            }
+        }
+    }
+    assert!(tried > 20_000, "{tried} points");
+}
+
 #[test]
 fn supports_of_points_are_no_larger_than_they_have_to_be() {
     let (mut rng, mut random) = (Rng::with_seed(4), Random::new(4, 4));
@@ -195,6 +230,60 @@ fn a_turned_segment_has_its_ends_and_not_a_turned_box() {
     // The corner of the box around it that a box would have, and a rounded one has not.
     assert!(support.misses([-0.08, -0.08, 0.0], [-0.08, -0.08, 0.0]));
     assert!(!support.misses([-0.05, -0.05, 0.0], [-0.05, -0.05, 0.0]));
+}
+
+#[test]
+fn what_could_overflow_is_bounded_by_nothing() {
+    // In the coordinates of the smallest leaf, squares of those of the farthest points are no numbers.
+    for (scale, bounded) in [("1e-6", true), ("1e-14", true), ("1e-15", false)] {
+        for place in ["(0 0 0)", "(1 2 3)"] {
+            let text = format!("jbt 1 translate {place} {{ scale {scale} {{ point {{ radius 1 }} }} }}");
+            assert_eq!(support(&scene::tree(&text)) != Support::EVERYWHERE, bounded, "{text}");
+        }
+    }
+    // A map so flat that rounding may take any point anywhere.
+    for (flat, bounded) in [("0.1", true), ("1e-3", true), ("1e-9", false)] {
+        let below = "twist axis z rate 0.1 { point { radius 1 } }";
+        let text = format!("jbt 1 scale (1 1 {flat}) {{ rotate axis y degrees 30 {{ {below} }} }}");
+        assert_eq!(support(&scene::tree(&text)) != Support::EVERYWHERE, bounded, "{text}");
+    }
+    // Slopes of what weighs a warp multiply.
+    for (count, bounded) in [(1, true), (2, true), (3, false)] {
+        let (before, after) = ("twist axis z rate 0.1 weighted { ", " point { radius 4 } }");
+        let below = "sum { point { radius 1 } point { radius 2 } }";
+        let text = format!("jbt 1 {} {below} {}", before.repeat(count), after.repeat(count));
+        let info = lower_ranges(&scene::tree(&text)).expect("it can be lowered").info;
+        let points = info.tables.values().last().expect("there are tables");
+        assert_eq!(points.supports[..] != [Support::EVERYWHERE; 2], bounded, "{text}: {points:?}");
+    }
+}
+
+/// Supports say nothing about a formula, whatever stands beside it: each row is an operand to decide on.
+#[test]
+fn rows_that_hold_formulas_may_be_decided_one_by_one() {
+    let decided = |part: &str| {
+        let row = |at: u32| format!("sum {{ {part} point {{ at ({at} 0 0) radius 1 }} }}");
+        let tree = scene::tree(&format!("jbt 1 union {{ {} {} }}", row(1), row(2)));
+        let info = lower_ranges(&tree).expect("it can be lowered").info;
+        info.decisions.iter().any(|decision| matches!(decision.rows, DecidedRows::Each { .. }))
+    };
+    assert!(decided("expression { x - y }"));
+    assert!(!decided("ring { ring_radius 1 radius 1 }"));
+}
+
+#[test]
+fn contests_begin_where_their_operator_does() {
+    let contest = |text: &str| {
+        let ranges = lower_ranges(&scene::tree(&format!("jbt 1 {text}"))).expect("it can be lowered");
+        let [contest] = &ranges.info.contests[..] else { panic!("{:?}", ranges.info.contests) };
+        (contest.extreme, contest.kind)
+    };
+    let positive = "point { radius 1 } point { radius 2 }";
+    let negative = "point { radius 1 } point { radius 2 strength -1 }";
+    let all = |extreme, start| (extreme, ContestKind::All(start));
+    assert_eq!(contest(&format!("union {{ {positive} }}")), all(Extreme::Largest, Some(0.0)));
+    assert_eq!(contest(&format!("union {{ {negative} }}")), all(Extreme::Largest, None));
+    assert_eq!(contest(&format!("intersection {{ {positive} }}")), all(Extreme::Smallest, None));
 }
 
 /// Counts of what was left out, by reason.

@@ -81,7 +81,8 @@ impl Mesh {
             return Ok(Cow::Borrowed(self));
         }
         if !self.parts.is_empty() {
-            return Ok(Cow::Owned(self.each_piece(|piece| piece.split().into_owned())));
+            let split = |piece: Self| Ok(piece.split_asking(go_on)?.into_owned());
+            return Ok(Cow::Owned(self.each_piece(split, go_on)?));
         }
         let count = self.positions.len();
         let mut positions = copied(&self.positions, creases.vertices.len(), go_on)?;
@@ -113,12 +114,28 @@ impl Mesh {
 }
 
 /// A copy with room for more. Every now and then it is asked whether to go on.
-fn copied<T: Copy, E>(items: &[T], more: usize, go_on: &dyn Fn() -> Result<(), E>) -> Result<Vec<T>, E> {
-    const ITEMS: usize = 1 << 16;
+pub(super) fn copied<T: Copy, E>(
+    items: &[T],
+    more: usize,
+    go_on: &dyn Fn() -> Result<(), E>,
+) -> Result<Vec<T>, E> {
     let mut copy = Vec::with_capacity(items.len() + more);
+    extended(&mut copy, items, |&item| item, go_on)?;
+    Ok(copy)
+}
+
+/// Appends what is made of each item. Every now and then it is asked whether to go on.
+pub(super) fn extended<T, U, E>(
+    to: &mut Vec<U>,
+    items: &[T],
+    make: impl Fn(&T) -> U,
+    go_on: &dyn Fn() -> Result<(), E>,
+) -> Result<(), E> {
+    const ITEMS: usize = 1 << 16;
+    to.reserve(items.len());
     for part in items.chunks(ITEMS) {
         go_on()?;
-        copy.extend_from_slice(part);
+        to.extend(part.iter().map(&make));
     }
-    Ok(copy)
+    Ok(())
 }

@@ -346,3 +346,63 @@ fn passed_over(rows: &[MetRow], width: f64, most: f32) -> impl Iterator<Item = &
     }
     rows.iter().enumerate().filter(move |&(index, _)| passed[index] || index < first).map(|(_, met)| met)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of one owner with these ranges, in a group each if they say so.
+    fn rows(ranges: &[(f32, f32, usize)]) -> Vec<MetRow> {
+        let met = |(place, &(low, high, group)): (u32, &(f32, f32, usize))| {
+            let entry = RowInBox { row: place, place, owner: 0, part: 0, stays: false };
+            MetRow { entry, group, low, high }
+        };
+        (0..).zip(ranges).map(met).collect()
+    }
+
+    fn beaten_of(ranges: &[(f32, f32, usize)], start: Option<f32>, below: f32) -> Vec<u32> {
+        beaten(&rows(ranges), start, below).map(|met| met.entry.place).collect()
+    }
+
+    #[test]
+    fn rows_below_the_best_are_beaten() {
+        let apart = [(0.0, 1.0, 0), (2.0, 3.0, 0), (1.5, 2.5, 0), (0.0, 1.9, 0)];
+        assert_eq!(beaten_of(&apart, None, f32::NEG_INFINITY), [0, 3]);
+        assert_eq!(beaten_of(&apart, None, 2.75), [0, 2, 3], "something is above");
+        assert_eq!(beaten_of(&apart, Some(4.0), f32::NEG_INFINITY), [0, 1, 2, 3]);
+        // Of equal ones the first wins: of rows in their order, of groups in that of the file, which nobody
+        // knows here.
+        let equal = [(0.0, 1.0, 0), (1.0, 1.0, 0), (0.5, 1.0, 0), (1.0, 1.0, 1)];
+        assert_eq!(beaten_of(&equal, None, f32::NEG_INFINITY), [2]);
+        assert_eq!(
+            beaten_of(&equal, Some(1.0), f32::NEG_INFINITY),
+            [0, 1, 2, 3],
+            "the start comes before all"
+        );
+    }
+
+    fn passed_of(ranges: &[(f32, f32)], width: f64, most: f32) -> Vec<u32> {
+        let ranges: Vec<_> = ranges.iter().map(|&(low, high)| (low, high, 0)).collect();
+        passed_over(&rows(&ranges), width, most).map(|met| met.entry.place).collect()
+    }
+
+    #[test]
+    fn steps_pass_over_what_is_apart() {
+        let any = f32::INFINITY;
+        // Below the largest low end so far by the width, or not quite.
+        assert_eq!(passed_of(&[(1.0, 1.25), (0.0, 0.5), (0.0, 0.5625)], 0.5, any), [1]);
+        assert_eq!(
+            passed_of(&[(0.0, 0.5), (1.0, 1.25)], 0.5, any),
+            [] as [u32; 0],
+            "those before it are not"
+        );
+        // Above the largest high end so far by twice the width, and by what two steps may round.
+        assert_eq!(passed_of(&[(0.0, 1.0), (2.001, 3.0)], 0.5, any), [0]);
+        assert_eq!(passed_of(&[(0.0, 1.0), (1.5, 3.0)], 0.5, any), [] as [u32; 0]);
+        assert_eq!(passed_of(&[(0.0, 1.0), (2.0_f32.next_up(), 3.0)], 0.5, any), [] as [u32; 0]);
+        assert_eq!(passed_of(&[(0.0, 1.0), (0.5, 0.75), (3.0, 4.0), (0.0, 4.0)], 0.5, any), [0, 1]);
+        // Complements that are not below iso2 give no attributes.
+        assert_eq!(passed_of(&[(-4.0, -3.0), (-1.0, -0.5)], 0.5, 1.0), [] as [u32; 0]);
+        assert_eq!(passed_of(&[(-4.0, -3.0), (-0.75, -0.5)], 0.5, 1.0), [0]);
+    }
+}

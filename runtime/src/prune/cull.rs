@@ -145,4 +145,16 @@ mod tests {
         assert_eq!(core.reach(0, &Boxes::new(&boxes)), 0b0000_0001);
         assert_eq!(Boxes::new(&boxes).all(), u8::MAX);
     }
+
+    #[test]
+    fn boxes_around_a_ball_touch_it() {
+        let support = Support { low: [1.0, 2.0, 3.0], high: [2.0, 3.0, 4.0], radius_squared: 0.25 };
+        let near = |found: [f32; 3], expected: [f32; 3]| {
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-5)
+        };
+        for bounds in [around(&support), RowSupports::new(&Arc::new(vec![support])).reach_box(0)] {
+            assert!(near(bounds.low, [0.5, 1.5, 2.5]) && near(bounds.high, [2.5, 3.5, 4.5]), "{bounds:?}");
+            assert!(bounds.low[0] <= 0.5 && bounds.high[2] >= 4.5, "{bounds:?}");
+        }
+    }
 }

@@ -229,3 +229,27 @@ impl Pruner {
 fn same_numbers(before: &Rows, now: &Rows, row: usize) -> bool {
     before.row(row).iter().zip(now.row(row)).all(|(a, b)| a.to_bits() == b.to_bits())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compiler::Compiler;
+    use crate::kernel::Engine;
+    use jbt_model::builder::{point, polyline};
+    use jbt_model::model::Model;
+    use jbt_model::tree::Tree;
+
+    #[test]
+    fn rows_of_owners_that_come_and_go_are_everywhere() {
+        let line = |count: u32| polyline((0..count).map(|x| [f64::from(x), 0.0, 0.0]), 1.0);
+        let model = |lines: &[u32]| {
+            let lines = lines.iter().map(|&count| line(count)).chain([point([9.0, 0.0, 0.0], 1.0)]);
+            Model::new(Tree::sum(lines)).check().expect("a good model")
+        };
+        let few = Pruner::new(&Compiler::for_engine(Engine::Lanes), &model(&[3])).expect("it compiles");
+        let more = few.updated(&model(&[3, 4])).expect("it compiles");
+        assert!(Arc::ptr_eq(&few.program.bound.kernel, &more.program.bound.kernel), "one program");
+        assert_eq!(more.edit(&few), Edit::Everywhere);
+        assert_eq!(few.edit(&more), Edit::Everywhere);
+    }
+}

@@ -129,3 +129,50 @@ impl<'a> DifferenceLimit<'a> {
             .map(|(_, row)| row)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jbt_lower::prune_info::ContestGroup;
+
+    /// The rows that go where the difference is at most 0.5; iso2 is 1.
+    fn beyond_of(side: DifferenceSide, extreme: Extreme, ranges: &[[f32; 2]]) -> Vec<u32> {
+        let other = ContestGroup { table: Table::new(0), field: jbt_ir::Value::new(0), rows: false };
+        let limit = DifferenceLimit {
+            difference: ContestDifference { side, other, node: None },
+            extreme,
+            iso2: 1.0,
+            selection: &Selection::default(),
+            firsts: &[],
+            owners: None,
+            most: [((0, 0), 0.5)].into_iter().collect(),
+        };
+        let met = |(place, &[low, high]): (u32, &[f32; 2])| {
+            let entry = RowInBox { row: place, place, owner: 0, part: 0, stays: false };
+            MetRow { entry, group: 0, low, high }
+        };
+        let rows: Vec<MetRow> = (0..).zip(ranges).map(met).collect();
+        limit.beyond(&rows).map(|met| met.entry.place).collect()
+    }
+
+    #[test]
+    fn rows_beyond_the_difference_go() {
+        use DifferenceSide::{Left, Right};
+        use Extreme::{Largest, Smallest};
+        let nobody: [u32; 0] = [];
+        // What is cut by less than the difference has left cuts nothing.
+        assert_eq!(beyond_of(Right, Largest, &[[0.0, 0.25], [0.0, 0.5], [0.0, 0.75]]), [0]);
+        // One that is above the difference everywhere stands for all.
+        assert_eq!(beyond_of(Left, Largest, &[[0.25, 2.0], [0.75, 1.0], [0.5, 1.0]]), [0, 2]);
+        assert_eq!(beyond_of(Left, Largest, &[[0.25, 2.0], [0.5, 1.0]]), nobody);
+        // Ranges are those of negative fields.
+        assert_eq!(beyond_of(Left, Smallest, &[[-2.0, -0.75], [-2.0, -0.5], [-2.0, -0.25]]), [0]);
+        assert_eq!(beyond_of(Right, Smallest, &[[-0.25, 0.0], [-0.75, -0.5]]), [1]);
+        assert_eq!(beyond_of(Right, Smallest, &[[-0.5, 0.0], [-0.75, -0.5]]), nobody);
+    }
+
+    #[test]
+    fn what_is_cut_is_no_less_than_nothing() {
+        assert_eq!([cut(1.0, 0.25), cut(1.0, 1.0), cut(1.0, 3.0), cut(1.0, -1.0)], [0.75, 0.0, 0.0, 2.0]);
+    }
+}

@@ -165,3 +165,139 @@ impl RowTrees {
         trees
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Pruner, Region};
+    use super::*;
+    use crate::boxes::Divisible;
+    use crate::compiler::Compiler;
+    use crate::kernel::Engine;
+    use fastrand::Rng;
+    use jbt_model::builder::{param, point, segment};
+    use jbt_model::model::Model;
+    use jbt_model::tree::Tree;
+
+    fn place(rng: &mut Rng) -> [f64; 3] {
+        std::array::from_fn(|_| 8.0 * rng.f64() - 4.0)
+    }
+
+    fn points(rng: &mut Rng, count: usize) -> Vec<Tree> {
+        (0..count).map(|_| point(place(rng), 0.1 + 0.3 * rng.f64())).collect()
+    }
+
+    fn pruner(tree: Tree) -> Pruner {
+        Pruner::new(&Compiler::for_engine(Engine::Lanes), &Model::new(tree).check().expect("a good model"))
+            .expect("it compiles")
+    }
+
+    fn small_box(rng: &mut Rng) -> Box3 {
+        let low: [f32; 3] = place(rng).map(|side| side as f32);
+        Box3::new(low, low.map(|side| side + 0.1 * rng.f32()))
+    }
+
+    fn region(pruner: &Pruner, bounds: Box3) -> Region {
+        pruner.region(bounds).expect("a region")
+    }
+
+    /// Asks so often about small parts that there are trees.
+    fn ask(pruner: &Pruner, rng: &mut Rng) {
+        (0..=PASSES).for_each(|_| drop(region(pruner, small_box(rng))));
+    }
+
+    /// Compares with a pruner that makes passes.
+    fn assert_as_passes(pruner: &Pruner, fresh: &Pruner, rng: &mut Rng) {
+        let mut found = 0;
+        for _ in 0..PASSES - 4 {
+            let bounds = small_box(rng);
+            let [a, b] = [pruner, fresh].map(|pruner| region(pruner, bounds));
+            assert_eq!(a.selection(), b.selection(), "{bounds:?}");
+            found += a.rows();
+        }
+        assert!(found > 100, "{found} rows");
+        assert!(trees(fresh).iter().all(|&is_made| !is_made), "it makes passes");
+    }
+
+    /// Of which tables there are trees.
+    fn trees(pruner: &Pruner) -> Vec<bool> {
+        pruner.program.trees.trees.iter().map(|tree| tree.get().is_some()).collect()
+    }
+
+    #[test]
+    fn questions_about_small_parts_are_counted() {
+        let trees = RowTrees::new(0);
+        let passes = || trees.passes.load(Ordering::Relaxed);
+        trees.note(1600, 101);
+        assert_eq!(passes(), 0, "it is not small");
+        trees.note(1600, 100);
+        assert_eq!(passes(), 1);
+        (0..2 * PASSES).for_each(|_| trees.note(1600, 3));
+        assert_eq!(passes(), PASSES, "so many are enough");
+    }
+
+    #[test]
+    fn tables_of_many_rows_have_trees_once_they_pay() {
+        for (count, expected) in [(FEWEST_ROWS - 1, false), (FEWEST_ROWS, true)] {
+            let mut rng = Rng::with_seed(1);
+            let all = points(&mut rng, 5000);
+            let segments = (0..count).map(|_| segment(place(&mut rng), place(&mut rng), 0.1));
+            let tree = Tree::sum(all.into_iter().chain(segments));
+            let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
+            ask(&pruner, &mut rng);
+            let made = trees(&pruner);
+            assert_eq!(made.iter().filter(|&&made| made).count(), 1 + usize::from(expected), "{made:?}");
+            assert!(!made[0], "the scene is one row");
+            assert_as_passes(&pruner, &fresh, &mut rng);
+        }
+    }
+
+    #[test]
+    fn trees_find_the_rows_of_all_owners() {
+        let mut rng = Rng::with_seed(2);
+        let tree = Tree::union((0..100).map(|_| Tree::sum(points(&mut rng, 60))));
+        let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
+        ask(&pruner, &mut rng);
+        assert!(trees(&pruner).contains(&true));
+        assert_as_passes(&pruner, &fresh, &mut rng);
+    }
+
+    #[test]
+    fn trees_follow_edits() {
+        let mut rng = Rng::with_seed(3);
+        let moved = point([param("x", 0.5), 0.0.into(), 0.0.into()], 3.0);
+        let model = Model::new(Tree::sum([moved].into_iter().chain(points(&mut rng, 5000))));
+        let tree = model.check().expect("a good model");
+        let compiler = Compiler::for_engine(Engine::Lanes);
+        let before = Pruner::new(&compiler, &tree).expect("it compiles");
+        ask(&before, &mut rng);
+        let made = trees(&before);
+        assert!(made.contains(&true), "{made:?}");
+        let edited = tree.with_parameters(&[("x", -2.0)]).expect("a good number");
+        let now = before.updated(&edited).expect("it compiles");
+        assert_eq!(trees(&now), made, "an edited model keeps its trees");
+        assert_as_passes(&now, &Pruner::new(&compiler, &edited).expect("it compiles"), &mut rng);
+    }
+
+    #[test]
+    fn of_rows_that_reach_everywhere_those_that_win_are_found() {
+        let mut rng = Rng::with_seed(4);
+        let places: Vec<[f64; 3]> = (0..FEW + 1000).map(|_| place(&mut rng)).collect();
+        let reaching = |strength: f64| places.iter().map(move |&at| point(at, 20.0).strength(strength));
+        for tree in [Tree::union(reaching(1.0)), Tree::intersection(reaching(-1.0))] {
+            let [pruner, fresh] = [pruner(tree.clone()), pruner(tree)];
+            let taken = |pruner: &Pruner, rng: &mut Rng| {
+                let before = pruner.counters().interval_evaluations;
+                let rows = region(pruner, small_box(rng)).rows();
+                assert!(rows < 300, "{rows} rows");
+                pruner.counters().interval_evaluations - before
+            };
+            let passes = taken(&pruner, &mut rng);
+            assert!(passes > FEW as u64, "a pass is a range for each row: {passes}");
+            ask(&pruner, &mut rng);
+            // Where hulls of rows are too wide, a pass is made after all.
+            let few = (0..30).filter(|_| taken(&pruner, &mut rng) < passes / 4).count();
+            assert!(few >= 10, "{few} of 30 boxes");
+            assert_as_passes(&pruner, &fresh, &mut rng);
+        }
+    }
+}

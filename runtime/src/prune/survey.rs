@@ -84,3 +84,105 @@ impl Pruner {
         Ok((fields, self.evaluations(&region.selection, 1)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boxes::Divisible;
+    use crate::compiler::Compiler;
+    use crate::kernel::Engine;
+    use jbt_model::builder::{point, segment};
+    use jbt_model::model::Model;
+    use jbt_model::tree::Tree;
+
+    /// So many points in a row along x.
+    fn pruner(count: usize) -> Pruner {
+        let tree = Tree::sum((0..count).map(|at| point([at as f64, 0.0, 0.0], 0.75)));
+        Pruner::new(&Compiler::for_engine(Engine::Lanes), &Model::new(tree).check().expect("a good model"))
+            .expect("it compiles")
+    }
+
+    fn boxes() -> [Box3; 4] {
+        [0.0, 1.0, 2.25, -9.0].map(|at| Box3::new([at, 0.0, 0.0], [at + 0.25, 0.25, 0.25]))
+    }
+
+    #[test]
+    fn ranges_and_regions_are_those_of_single_questions() {
+        let pruner = pruner(3);
+        let region = pruner.everywhere();
+        let mut expected = [ANYTHING; 4];
+        pruner.ranges(&region, &boxes(), &mut expected).expect("ranges");
+        let before = pruner.counters();
+        let (ranges, evaluations) = pruner.many_ranges(&region, &boxes()).expect("ranges");
+        assert_eq!((&ranges[..], evaluations), (&expected[..], 3), "three distances for a box");
+        let taken = pruner.counters();
+        assert_eq!(taken.boxes - before.boxes, 4);
+        assert_eq!(taken.interval_evaluations - before.interval_evaluations, 12);
+        assert_eq!(pruner.many_ranges(&region, &[]).expect("no ranges"), (Vec::new(), 0));
+        let (kept, evaluations) = pruner.split(&region, &boxes(), &|range| range[1] > 0.0).expect("parts");
+        assert_eq!(evaluations, 12);
+        let (mut parts, before) = (Vec::new(), pruner.counters());
+        pruner.narrow(&region, &boxes(), &mut parts).expect("regions");
+        assert_eq!(pruner.counters(), before, "without probes nobody asks for ranges");
+        let found: Vec<_> = kept.iter().map(|(lane, region)| (*lane, region.selection())).collect();
+        let expected: Vec<_> = [0, 1, 2].map(|lane| (lane, parts[lane].selection())).to_vec();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn operands_that_cannot_win_are_in_no_region() {
+        // In the first box both sums are there, and the second of them, of another shape, is less.
+        let strong = point([0.0; 3], 2.0) + point([0.25, 0.0, 0.0], 2.0);
+        let weak = point([0.0, 1.5, 0.0], 2.0) + segment([0.0, 1.5, 0.0], [0.0, 3.0, 0.0], 2.0);
+        let tree = Model::new(Tree::union([strong, weak])).check().expect("a good model");
+        let pruner = Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles");
+        let region = pruner.everywhere();
+        let bounds = [Box3::new([-0.1; 3], [0.1; 3])];
+        let (kept, _) = pruner.split(&region, &bounds, &|_| true).expect("parts");
+        let surveyed = pruner.survey(&region, &bounds, &|_| true).expect("parts");
+        let mut parts = Vec::new();
+        pruner.narrow(&region, &bounds, &mut parts).expect("regions");
+        assert!(
+            pruner.program.info.probes > 0 && parts[0].rows() < region.rows(),
+            "{} rows",
+            parts[0].rows()
+        );
+        assert_eq!(kept[0].1.selection(), parts[0].selection());
+        assert_eq!(surveyed[0].1.as_ref().map(Region::selection), Some(parts[0].selection()));
+    }
+
+    #[test]
+    fn of_too_many_rows_there_are_no_ranges() {
+        for (count, ranged) in [(MAX_RANGED_ROWS - 1, true), (MAX_RANGED_ROWS, false)] {
+            // The scene is a row, too.
+            let pruner = pruner(count);
+            let region = pruner.everywhere();
+            let (ranges, evaluations) = pruner.many_ranges(&region, &boxes()).expect("ranges");
+            assert_eq!(evaluations, if ranged { count as u64 } else { 0 });
+            assert_eq!(ranges.iter().any(|&range| range != ANYTHING), ranged);
+            let (kept, evaluations) =
+                pruner.split(&region, &boxes(), &|range| range[1] > 0.0).expect("parts");
+            assert_eq!(evaluations, if ranged { 4 * count as u64 } else { 0 });
+            assert_eq!(kept.len(), if ranged { 3 } else { 4 });
+        }
+    }
+
+    #[test]
+    fn operands_of_too_many_rows_are_not_decided() {
+        let weak = point([0.0, 1.5, 0.0], 2.0) + segment([0.0, 1.5, 0.0], [0.0, 3.0, 0.0], 2.0);
+        let pruner = |count: usize| {
+            let strong = Tree::sum((0..count).map(|at| point([1e-4 * at as f64, 0.0, 0.0], 2.0)));
+            let tree = Model::new(Tree::union([strong, weak.clone()])).check().expect("a good model");
+            Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles")
+        };
+        let others = pruner(2).everywhere().rows() - 2;
+        for (rows, decided) in [(MAX_RANGED_ROWS, true), (MAX_RANGED_ROWS + 1, false)] {
+            let pruner = pruner(rows - others);
+            let region = pruner.everywhere();
+            assert_eq!(region.rows(), rows);
+            let mut parts = Vec::new();
+            pruner.narrow(&region, &[Box3::new([-0.1; 3], [0.1; 3])], &mut parts).expect("regions");
+            assert_eq!(parts[0].rows() < rows, decided, "{} of {rows} rows", parts[0].rows());
+        }
+    }
+}

@@ -207,4 +207,25 @@ mod tests {
         }
         assert!(narrow > 400, "{narrow}");
     }
+
+    #[test]
+    fn boxes_of_a_tree_are_small() {
+        let mut rng = fastrand::Rng::with_seed(5);
+        let ball = |rng: &mut fastrand::Rng| {
+            let at = std::array::from_fn(|_| 3.0 + 8.0 * rng.f32());
+            Support { low: at, high: at, radius_squared: 1e-4 }
+        };
+        let supports: Vec<Support> = (0..4096).map(|_| ball(&mut rng)).collect();
+        let active: Vec<u32> = (0..4096).collect();
+        let tree = RowTree::new(&RowSupports::new(&supports.into()), &active);
+        // Boxes of 16, of 128 and of 1,024 rows, each with its share of a space of 8^3: half of them are not
+        // much larger.
+        for (level, (count, most)) in [(256, 2.5), (32, 5.0), (4, 8.1)].into_iter().enumerate() {
+            let side = |bounds: &Box3| (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f32::max);
+            let mut sides: Vec<f32> = tree.levels[level].iter().map(side).collect();
+            assert_eq!(sides.len(), count);
+            sides.sort_unstable_by(f32::total_cmp);
+            assert!(sides[count / 2] < most, "level {level}: {}", sides[count / 2]);
+        }
+    }
 }

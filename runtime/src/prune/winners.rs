@@ -184,3 +184,36 @@ fn order(numbers: &[Vec<f32>], active: &[u32]) -> Vec<u32> {
     scatter(|_| places.par_sort_unstable_by_key(|&place| place));
     places.into_iter().map(|(_, position)| position).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_follow_each_other_stand_near_each_other() {
+        let mut rng = fastrand::Rng::with_seed(1);
+        let count = 4096;
+        let planes: Vec<Vec<f32>> =
+            (0..3).map(|_| (0..count).map(|_| 8.0 * rng.f32() - 4.0).collect()).collect();
+        // Numbers that are all the same say nothing; behind three others nobody looks.
+        let same = vec![0.5; count];
+        let numbers =
+            [same.clone(), planes[0].clone(), planes[1].clone(), same.clone(), planes[2].clone(), same]
+                .to_vec();
+        let active: Vec<u32> = (0..count as u32).filter(|row| row % 5 != 0).collect();
+        let order = order(&numbers, &active);
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert!(sorted.iter().copied().eq(0..active.len() as u32), "each position once");
+        let mut apart: Vec<f32> = order
+            .windows(2)
+            .map(|pair| {
+                let [a, b] = [pair[0], pair[1]].map(|position| active[position as usize] as usize);
+                planes.iter().map(|plane| (plane[a] - plane[b]).abs()).fold(0.0, f32::max)
+            })
+            .collect();
+        apart.sort_unstable_by(f32::total_cmp);
+        // There are 15 rows along each side of 8; two at random are some 4 apart.
+        assert!(apart[apart.len() / 2] < 1.0, "{}", apart[apart.len() / 2]);
+    }
+}
