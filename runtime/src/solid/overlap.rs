@@ -227,10 +227,10 @@ impl<'a> PairSearch<'a> {
         let middles: Vec<[f32; 3]> = parts.iter().map(center).collect();
         let values = self.values([&parent.regions[0], &parent.regions[1]], &middles)?;
         for ((part, &value), &middle) in parts.iter().zip(&values).zip(&middles) {
-            if value > self.best {
-                if let Some(both) = self.follow(middle, part)? {
-                    return Ok(Some(both));
-                }
+            if value > self.best
+                && let Some(both) = self.follow(middle, part)?
+            {
+                return Ok(Some(both));
             }
         }
         let is_large: Vec<bool> = parts.iter().map(|part| part.longest_side() > self.tolerance).collect();
