@@ -1,8 +1,9 @@
 //! Is the crate `wide` at least as fast as plain loops for vector code on the host?
 //!
 //! Loops like three of the library, whose bits do not depend on fused products, each in three ways: as a
-//! plain loop, as the same loop compiled for AVX2 beside the baseline (`multiversion`), and with `wide::f32x8`,
-//! which takes what the build enables: two vectors of SSE2. All three answer alike, which is checked.
+//! plain loop, as the same loop compiled for AVX2 beside the baseline (`multiversion`), and with
+//! `wide::f32x8`, which takes what the build enables: two vectors of SSE2. All three answer alike, which is
+//! checked.
 
 use std::hint::black_box;
 

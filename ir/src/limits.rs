@@ -58,6 +58,8 @@ pub const MAX_GAP_WORK: u64 = 1 << 28;
 /// Bytes of the boxes that are kept for the distance of two solids, and of the rows that run in those which
 /// are not cut yet. With more, the bounds are those of the pairs so far.
 pub const MAX_GAP_BYTES: usize = 256 << 20;
+/// What may be cut while two parts are compared: rows that run in boxes, some nanoseconds each.
+pub const MAX_OVERLAP_WORK: u64 = 1 << 27;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.

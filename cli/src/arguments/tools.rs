@@ -224,7 +224,8 @@ pub struct DiffArguments {
     pub second: PathBuf,
     #[command(flatten)]
     pub options: SceneOptions,
-    /// The box in which fields are compared: its smallest and its largest corner [default: where they may differ]
+    /// The box in which fields are compared: its smallest and its largest corner [default: where they may
+    /// differ]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
     pub region: Option<Box3<f64>>,
     /// Print one JSON object instead of words

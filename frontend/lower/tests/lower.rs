@@ -99,8 +99,8 @@ fn computed_attributes_make_no_rows() {
     }
 }
 
-/// A leaf that is used twice is computed once: without a guard, because a guard costs as much as a leaf, unless
-/// its formulas take longer.
+/// A leaf that is used twice is computed once: without a guard, because a guard costs as much as a leaf,
+/// unless its formulas take longer.
 #[test]
 fn a_shared_leaf_with_long_formulas_has_a_guard() {
     let tables = |steps: usize| {

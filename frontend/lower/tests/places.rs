@@ -1,5 +1,5 @@
-//! Where things are asked: formulas in spaces and far boxes have the answers of the oracle, and what stands at
-//! one place is one thing.
+//! Where things are asked: formulas in spaces and far boxes have the answers of the oracle, and what stands
+//! at one place is one thing.
 
 use jbt_ir::{InstKind, Op, Rule};
 use jbt_lower::{lower, lower_ranges};
@@ -74,8 +74,8 @@ fn a_selector_of_one_child_is_that_child() {
     assert_eq!(of("select 0 { point { radius 1 } }"), of("point { radius 1 }"));
 }
 
-/// What may be the model's answer, behind warps and selectors, is never left out: its attributes are seen even
-/// where its field is zero.
+/// What may be the model's answer, behind warps and selectors, is never left out: its attributes are seen
+/// even where its field is zero.
 #[test]
 fn a_choice_that_may_be_the_answer_stays() {
     let rules = |text: &str| {

@@ -19,6 +19,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use jbt_ir::limits::MAX_OVERLAP_WORK;
 use jbt_ir::watch;
 
 use super::halves::{halves, ranges};
@@ -27,11 +28,8 @@ use crate::boxes::{Box3, Divisible as _, MAX_PARTS};
 use crate::error::EvalError;
 use crate::prune::Region;
 
-/// What may be cut while two parts are compared: rows that run in boxes. Some nanoseconds each.
-const MAX_WORK: u64 = 1 << 27;
-
-/// The part of it that is for the boxes with the best middles.
-const GREEDY_WORK: u64 = MAX_WORK / 8;
+/// The part of the work that is for the boxes with the best middles.
+const GREEDY_WORK: u64 = MAX_OVERLAP_WORK / 8;
 
 /// What a cut takes besides the rows that run in its box, in rows.
 const CUT_WORK: u64 = 1 << 10;
@@ -147,7 +145,7 @@ impl<'a> PairSearch<'a> {
         let [a, b] = self.solids.map(|solid| solid.pruner.region(around));
         self.push(self.whole, [a?, b?], f32::NEG_INFINITY);
         let mut turns = 0;
-        while self.work < MAX_WORK {
+        while self.work < MAX_OVERLAP_WORK {
             turns += 1;
             if turns % LOOK == 0 {
                 watch::go_on()?;
@@ -248,8 +246,8 @@ impl<'a> PairSearch<'a> {
         Ok(None)
     }
 
-    /// Climbs from the best point so far, the middle of a box. The answer is a cube inside of both about where
-    /// that leads, if one is known.
+    /// Climbs from the best point so far, the middle of a box. The answer is a cube inside of both about
+    /// where that leads, if one is known.
     fn follow(&mut self, middle: [f32; 3], bounds: &Box3) -> Result<Option<Box3>, EvalError> {
         let (value, point) = self.climb(middle, bounds)?;
         self.best = value;
@@ -263,7 +261,8 @@ impl<'a> PairSearch<'a> {
         Ok(cube)
     }
 
-    /// Steps from a point of a box to where the smaller field is larger, in the box and as far again around it.
+    /// Steps from a point of a box to where the smaller field is larger, in the box and as far again around
+    /// it.
     fn climb(&mut self, start: [f32; 3], bounds: &Box3) -> Result<BothPoint, EvalError> {
         let mut step = 0.5 * bounds.longest_side();
         let around = grown(bounds, 2.0 * step);

@@ -71,8 +71,8 @@ pub enum Relation {
     /// Neither is proven, and the work was used up before boxes were as small as the tolerance: points may be
     /// as near as that to each other, or in both.
     Undecided {
-        /// No ball of this diameter is in both, but for what is due to rounding: twice the longest side of the
-        /// boxes that are left.
+        /// No ball of this diameter is in both, but for what is due to rounding: twice the longest side of
+        /// the boxes that are left.
         thinner_than: f64,
         /// A point of one of them, in the world: where the smaller of both fields is largest.
         at: [f64; 3],
@@ -155,8 +155,8 @@ impl PartSolids {
         Ok(Self { compiler: compiler.clone(), tree: tree.clone(), solids, region: None })
     }
 
-    /// The same parts, of which only what is in a box is looked at: unbounded ones need one. Corners are those
-    /// of the world.
+    /// The same parts, of which only what is in a box is looked at: unbounded ones need one. Corners are
+    /// those of the world.
     #[must_use]
     pub fn within(self, region: Box3<f64>) -> Self {
         let origin = self.tree.origin();
