@@ -63,7 +63,7 @@ def main(folder: Path) -> None:
     # Who decides at the vertices: how many of them each element has.
     owners = molecule.owner(mesh.vertices[::10])
     names = dict(enumerate(elements))
-    numbers = [int(path.split("/")[0].split(".")[1]) for path in owners.path if path]
+    numbers = [int(path.split("/")[1].split(".")[0]) for path in owners.path if path]
     print("the surface belongs to", dict(Counter(names[number] for number in numbers)))
 
     normal = np.linalg.svd(places - places.mean(axis=0))[2]

@@ -91,7 +91,8 @@ impl PyModel {
                     let constants = owner.constants(&tree).into_iter();
                     let constants = constants.map(|(name, value)| (name.to_owned(), value.clone())).collect();
                     let path = owner.path(&tree);
-                    FoundOwner { node: owner.node.0, share: owner.share, path, span: owner.span, constants }
+                    let (node, particle) = (owner.node.0, owner.particle as i64);
+                    FoundOwner { node, particle, share: owner.share, path, span: owner.span, constants }
                 })
             };
             Ok(points.par_iter().map(each).collect::<Vec<_>>())
@@ -134,6 +135,7 @@ impl PyModel {
 /// The leaf that decides at a point.
 struct FoundOwner {
     node: u32,
+    particle: i64,
     share: f64,
     path: String,
     span: Option<Span>,
@@ -147,10 +149,12 @@ fn owners_dict(
     line: impl Fn(Option<Span>) -> usize,
 ) -> PyResult<Bound<'_, PyDict>> {
     let leaf = found.iter().map(|one| one.as_ref().map_or(-1, |one| i64::from(one.node))).collect();
+    let particle = found.iter().map(|one| one.as_ref().map_or(-1, |one| one.particle)).collect();
     let share = found.iter().map(|one| one.as_ref().map_or(0.0, |one| one.share)).collect();
     let lines = found.iter().map(|one| one.as_ref().map_or(0, |one| line(one.span) as i64)).collect();
     let dict = PyDict::new(py);
     dict.set_item("leaf", PyArray1::<i64>::from_vec(py, leaf))?;
+    dict.set_item("particle", PyArray1::<i64>::from_vec(py, particle))?;
     dict.set_item("share", PyArray1::<f64>::from_vec(py, share))?;
     dict.set_item("line", PyArray1::<i64>::from_vec(py, lines))?;
     let mut paths = Vec::new();

@@ -238,6 +238,9 @@ def test_contains_and_owner(peanut: jbt.Model) -> None:
     owners = peanut.owner([[0, 0.5, 0], [0, -0.5, 0], [9, 9, 9]])
     assert owners.path == ["0.sum/0.color/0.point", "0.sum/1.color/0.point", None]
     assert owners.leaf[2] == -1
+    assert owners.particle.tolist() == [0, 0, -1]
+    drops = jbt.points([[0, 0, 0], [3, 0, 0]], radius=1)
+    assert drops.owner([[3, 0.5, 0], [0, 0.5, 0]]).particle.tolist() == [1, 0]
     assert 0.5 < owners.share[0] < 1
     text = jbt.loads("jbt 1\nunion {\npoint { radius 1 }\n}")
     assert text.owner([[0, 0, 0]]).line.tolist() == [3]

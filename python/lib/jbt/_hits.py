@@ -78,6 +78,7 @@ class Owners:
 
     Attributes:
         leaf: its number, the same for the same leaf; -1 where nobody decides.
+        particle: which of the particles of the leaf it is; 0 of others, -1 where nobody decides.
         share: its part of the weight, up to 1; less than 1 where fields blend.
         path: the way to it from the root, as "0.union/0.color/0.point"; None for nobody.
         line: the line of its text, from 1; 0 if the model came from none.
@@ -85,6 +86,7 @@ class Owners:
     """
 
     leaf: NDArray[np.int64]
+    particle: NDArray[np.int64]
     share: Doubles
     path: list[str | None]
     line: NDArray[np.int64]
