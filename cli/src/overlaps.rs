@@ -23,7 +23,8 @@ pub struct PartFindings {
 }
 
 impl PartFindings {
-    /// Compares all parts. `tolerance`: how near points touch; `region`: where.
+    /// Compares all parts. `tolerance`: how near points touch, by default as near as can be told in the time;
+    /// `region`: where.
     pub fn new(
         scene: &LoadedScene,
         tree: &CheckedTree,
@@ -38,7 +39,12 @@ impl PartFindings {
             side = (0..3).fold(0.0, |side: f64, axis| side.max(high[axis] - low[axis])).min(side);
         }
         let usual = if side.is_finite() && side > 0.0 { side / TOLERANCES } else { 1.0 / TOLERANCES };
-        let pairs = parts.relations(tolerance.unwrap_or(usual)).map_err(|error| failed(&error))?;
+        let mut pairs = parts.relations(tolerance.unwrap_or(usual)).map_err(|error| failed(&error))?;
+        if tolerance.is_none() {
+            for pair in &mut pairs {
+                coarser(&parts, pair).map_err(|error| failed(&error))?;
+            }
+        }
         let volume = |part: usize| Ok(parts.measure(part, Fineness::Resolution(CELLS))?.volume);
         let volumes: Result<Vec<Volume>, PartError> = (0..parts.len()).map(volume).collect();
         let volumes = volumes.map_err(|error| failed(&error))?;
@@ -114,6 +120,18 @@ impl PartFindings {
             "pairs": self.pairs.iter().map(pair).collect::<Vec<_>>(),
         })
     }
+}
+
+/// Asks again for what could not be told of a pair, with the tolerance that was reached.
+fn coarser(parts: &PartSolids, pair: &mut PartPair) -> Result<(), PartError> {
+    /// Each doubles the tolerance.
+    const TURNS: usize = 4;
+    let [a, b] = pair.parts;
+    for _ in 0..TURNS {
+        let Relation::Undecided { thinner_than, .. } = pair.relation else { break };
+        pair.relation = parts.relation(a, b, thinner_than)?;
+    }
+    Ok(())
 }
 
 fn place(at: &[f64; 3]) -> String {

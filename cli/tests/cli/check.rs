@@ -96,6 +96,26 @@ fn overlaps_are_told() {
     folder.jbt(&["check", "--tolerance", "0.1", "scene.jbt"]).code(2);
 }
 
+/// Between faces that meet there are more boxes than there is time for: without a tolerance, one is found.
+#[test]
+fn faces_that_meet_touch() {
+    let plate = |name: &str, z: f64| {
+        format!("part \"{name}\" {{ box {{ center (0 0 {z}) half (10 10 0.4) surface_radius 0.1 }} }}\n")
+    };
+    let folder = Folder::new()
+        .with("flush.jbt", format!("jbt 1\n{}{}", plate("a", 0.0), plate("b", 1.0)))
+        .with("thin.jbt", format!("jbt 1\n{}{}", plate("a", 0.0), plate("b", 0.97)));
+    let relation = |words: &[&str]| {
+        let report = folder.jbt(&[&["check", "--overlaps", "--json"], words].concat()).code(0).json();
+        report["files"][0]["model"]["overlaps"]["pairs"][0].clone()
+    };
+    let told = relation(&["flush.jbt"]);
+    let (within, z) = (told["within"].as_f64().unwrap(), told["at"][2].as_f64().unwrap());
+    assert!(told["relation"] == "touching" && within < 0.5 && (z - 0.5).abs() < 1e-3, "{told}");
+    assert_eq!(relation(&["flush.jbt", "--tolerance", "0.001"])["relation"], "undecided");
+    assert_eq!(relation(&["thin.jbt"])["relation"], "overlapping");
+}
+
 #[test]
 fn two_scenes_are_compared() {
     let scene = |radius: &str| {
