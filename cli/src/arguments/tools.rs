@@ -166,8 +166,8 @@ pub struct CheckArguments {
     /// Compare the parts of each scene: volumes, and which of them overlap, touch or are apart
     #[arg(long)]
     pub overlaps: bool,
-    /// How near to each other points of two parts touch; without it a 1024th of the longest side, or as near as
-    /// can be told
+    /// How near to each other points of two parts touch; without it a 1024th of the longest side, or as
+    /// near as can be told
     #[arg(long, value_name = "T", requires = "overlaps", value_parser = positive)]
     pub tolerance: Option<f64>,
     /// The box in which parts are compared: its smallest and its largest corner; unbounded parts need one
