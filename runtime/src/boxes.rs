@@ -58,6 +58,14 @@ impl Box3 {
         }
     }
 
+    /// What is in both; not [full](Self::is_full) if nothing is.
+    pub(crate) fn common(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|axis| self.low[axis].max(other.low[axis])),
+            high: [0, 1, 2].map(|axis| self.high[axis].min(other.high[axis])),
+        }
+    }
+
     /// The smallest box that holds some points; `None` if there are none, or if a coordinate is not finite.
     #[must_use]
     pub(crate) fn around(points: &[[f32; 3]]) -> Option<Self> {
@@ -95,6 +103,44 @@ impl Box3 {
     #[must_use]
     pub fn middle(&self, axis: usize) -> f32 {
         0.5 * self.low[axis] + 0.5 * self.high[axis]
+    }
+
+    /// Its middle.
+    pub(crate) fn center(&self) -> [f32; 3] {
+        [0, 1, 2].map(|axis| self.middle(axis))
+    }
+
+    /// Equal parts of it, so many along each axis, x fastest; fewer where f32 has no more numbers
+    /// between the sides.
+    pub(crate) fn cut(&self, counts: [usize; 3]) -> Vec<Self> {
+        let sides: [Vec<f32>; 3] = [0, 1, 2].map(|axis| {
+            let (low, high) = (f64::from(self.low[axis]), f64::from(self.high[axis]));
+            let side = |part: usize| (low + (high - low) * part as f64 / counts[axis] as f64) as f32;
+            let mut sides: Vec<f32> = (0..=counts[axis]).map(side).collect();
+            sides.dedup();
+            if sides.len() == 1 {
+                // A flat box is one part.
+                sides.push(sides[0]);
+            }
+            sides
+        });
+        let mut parts = Vec::new();
+        for z in sides[2].windows(2) {
+            for y in sides[1].windows(2) {
+                for x in sides[0].windows(2) {
+                    parts.push(Self::new([x[0], y[0], z[0]], [x[1], y[1], z[1]]));
+                }
+            }
+        }
+        parts
+    }
+
+    /// Its halves along its longer sides: sides that are much shorter than the longest stay whole. The box
+    /// alone if it cannot be cut.
+    pub(crate) fn halved(&self) -> Vec<Self> {
+        let longest = self.longest_side();
+        let is_long = |axis: usize| self.high[axis] - self.low[axis] > 0.5 * longest;
+        self.cut([0, 1, 2].map(|axis| 1 + usize::from(is_long(axis))))
     }
 }
 

@@ -23,9 +23,11 @@ use crate::boxes::{ANYTHING, Box3, Divisible as _};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::ordered::ordered;
 use crate::points::Points;
 use crate::prune::{Pruner, Region};
 use crate::support::MARGIN;
+use crate::union_find::root;
 
 /// Boxes that are cut at most, and that are left.
 const MAX_BOXES: usize = 1 << 13;
@@ -170,19 +172,7 @@ impl Ord for DifferingBox {
     }
 }
 
-impl PartialOrd for DifferingBox {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for DifferingBox {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for DifferingBox {}
+ordered! { DifferingBox }
 
 /// Boxes in which a model is not proven 0, in the order in which they were found.
 fn open_boxes(pruner: &Pruner, whole: Box3) -> Result<Vec<Box3>, EvalError> {
@@ -196,7 +186,7 @@ fn open_boxes(pruner: &Pruner, whole: Box3) -> Result<Vec<Box3>, EvalError> {
         }
         let Some(DifferingBox { bounds, region, number }) = open.pop() else { break };
         watch::go_on()?;
-        let parts = cut(&bounds);
+        let parts = bounds.halved();
         if parts.len() == 1 {
             smallest.push((number, bounds));
             continue;
@@ -219,27 +209,6 @@ fn open_boxes(pruner: &Pruner, whole: Box3) -> Result<Vec<Box3>, EvalError> {
     smallest.extend(open.into_vec().into_iter().map(|one| (one.number, one.bounds)));
     smallest.sort_unstable_by_key(|&(number, _)| number);
     Ok(smallest.into_iter().map(|(_, bounds)| bounds).collect())
-}
-
-/// The halves of the longer sides of a box; the box if it cannot be cut.
-fn cut(bounds: &Box3) -> Vec<Box3> {
-    let longest = bounds.longest_side();
-    let mut parts = vec![*bounds];
-    for axis in 0..3 {
-        let middle = bounds.middle(axis);
-        let is_long = bounds.high[axis] - bounds.low[axis] > 0.5 * longest;
-        if is_long && bounds.low[axis] < middle && middle < bounds.high[axis] {
-            parts = parts
-                .into_iter()
-                .flat_map(|part| {
-                    let [mut low, mut high] = [part; 2];
-                    (low.high[axis], high.low[axis]) = (middle, middle);
-                    [low, high]
-                })
-                .collect();
-        }
-    }
-    parts
 }
 
 /// Points that are asked in a box: its middle, and those of its eighths.
@@ -306,7 +275,7 @@ fn places(difference: &Compiled, open: &[Box3], apart: &[f32]) -> Vec<DifferingP
 
 /// For each box the first of those that it touches, or that touch one that it touches, and so on.
 fn clusters(boxes: &[Box3]) -> Vec<usize> {
-    let mut parents: Vec<usize> = (0..boxes.len()).collect();
+    let mut parents: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     order.sort_by(|&a, &b| boxes[a].low[0].total_cmp(&boxes[b].low[0]));
     // Boxes that reach as far as the one that the sweep is at.
@@ -314,19 +283,10 @@ fn clusters(boxes: &[Box3]) -> Vec<usize> {
     for at in order {
         reached.retain(|&one| boxes[one].high[0] >= boxes[at].low[0]);
         for &one in reached.iter().filter(|&&one| boxes[one].meets(&boxes[at])) {
-            let [a, b] = [root(&mut parents, one), root(&mut parents, at)];
-            parents[a.max(b)] = a.min(b);
+            let [a, b] = [one, at].map(|one| root(&mut parents, one as u32));
+            parents[a.max(b) as usize] = a.min(b);
         }
         reached.push(at);
     }
-    (0..boxes.len()).map(|one| root(&mut parents, one)).collect()
-}
-
-/// The first of the boxes that belong together.
-fn root(parents: &mut [usize], mut one: usize) -> usize {
-    while parents[one] != one {
-        parents[one] = parents[parents[one]];
-        one = parents[one];
-    }
-    one
+    (0..boxes.len() as u32).map(|one| root(&mut parents, one) as usize).collect()
 }

@@ -139,6 +139,7 @@ mod kernel;
 pub mod live;
 pub mod mesh;
 mod morton;
+mod ordered;
 mod parallel;
 mod picture;
 mod points;
@@ -159,6 +160,7 @@ mod support;
 mod touched;
 pub mod trace;
 pub mod tree;
+mod union_find;
 mod word;
 
 /// README's program runs.

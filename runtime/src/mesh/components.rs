@@ -1,9 +1,10 @@
 //! Connected components of a mesh: surfaces that no triangle connects.
 //!
-//! Vertices of one triangle are connected (union-find with halved paths: Tarjan and van Leeuwen 1984).
+//! Vertices of one triangle are connected.
 
 use super::indexed::Mesh;
 use crate::boxes::Box3;
+use crate::union_find::root;
 
 /// A connected component of a mesh.
 #[derive(Clone, PartialEq, Debug)]
@@ -66,16 +67,6 @@ impl Mesh {
         }
         found
     }
-}
-
-/// The vertex that stands for all that a vertex is connected with.
-fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
-    while roots[vertex as usize] != vertex {
-        let above = roots[roots[vertex as usize] as usize];
-        roots[vertex as usize] = above;
-        vertex = above;
-    }
-    vertex
 }
 
 /// The signed volume between a triangle and a point.

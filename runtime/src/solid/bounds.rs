@@ -15,9 +15,10 @@ use std::collections::BinaryHeap;
 
 use jbt_ir::limits::MAX_SEARCH_BOXES;
 
-use super::{RegionError, Solid, SolidBatch, center, cut};
+use super::{RegionError, Solid, SolidBatch};
 use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
+use crate::ordered::ordered;
 use crate::prune::Region;
 
 /// A box around a solid, and one that the solid fills up to its sides.
@@ -152,19 +153,7 @@ impl Ord for FartherBox {
     }
 }
 
-impl PartialOrd for FartherBox {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for FartherBox {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for FartherBox {}
+ordered! { FartherBox }
 
 /// The search for one side.
 struct SideSearch<'a> {
@@ -240,7 +229,7 @@ impl<'a> SideSearch<'a> {
         let region = &regions[0];
         let mut counts = [1; 3];
         counts[self.side.axis] = MAX_PARTS;
-        let mut slices = cut(&bounds, counts);
+        let mut slices = bounds.cut(counts);
         if !self.side.upper {
             slices.reverse();
         }
@@ -254,10 +243,7 @@ impl<'a> SideSearch<'a> {
             }
             return Ok(true);
         }
-        let longest = bounds.longest_side();
-        let halved =
-            [0, 1, 2].map(|axis| 1 + usize::from(bounds.high[axis] - bounds.low[axis] > longest / 2.0));
-        let parts = cut(&bounds, halved);
+        let parts = bounds.halved();
         if parts.len() == 1 {
             return Ok(false);
         }
@@ -281,7 +267,7 @@ impl<'a> SideSearch<'a> {
                 Some(true) => self.learn(bounds),
                 Some(false) => {}
                 None => {
-                    self.batch.push(center(bounds));
+                    self.batch.push(bounds.center());
                     self.batch.push(self.far_point(bounds));
                 }
             }
@@ -306,7 +292,7 @@ impl<'a> SideSearch<'a> {
 
     /// A point of a box that would do if it were inside: its far side is within the tolerance.
     fn far_point(&self, bounds: &Box3) -> [f32; 3] {
-        let mut point = center(bounds);
+        let mut point = bounds.center();
         let (low, high) = (bounds.low[self.side.axis], bounds.high[self.side.axis]);
         let far = self.side.coordinate(self.side.reach(bounds) - self.tolerance);
         point[self.side.axis] = far.clamp(low, high);

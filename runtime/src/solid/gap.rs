@@ -19,10 +19,11 @@ use std::ops::Range;
 use jbt_ir::limits::{MAX_GAP_BYTES, MAX_GAP_PAIRS, MAX_GAP_WORK};
 use jbt_ir::watch;
 
-use super::halves::{halves, ranges};
-use super::{Solid, SolidBatch, center, cut};
+use super::ranges::ranges;
+use super::{Solid, SolidBatch};
 use crate::boxes::{Box3, Divisible as _};
 use crate::error::EvalError;
+use crate::ordered::ordered;
 use crate::prune::Region;
 
 /// What a cut takes besides the rows that run in its box, in rows.
@@ -122,7 +123,7 @@ impl<'a> GapTree<'a> {
         };
         self.bytes -= region.bytes();
         let bounds = self.boxes[place].bounds;
-        let parts = cut(&bounds, halves(&bounds));
+        let parts = bounds.halved();
         if parts == [bounds] {
             return Ok(None);
         }
@@ -150,10 +151,10 @@ impl<'a> GapTree<'a> {
         let mut regions = Vec::new();
         solid.pruner.narrow(region, &bounds, &mut regions)?;
         let mut batch = SolidBatch::default();
-        bounds.iter().for_each(|part| batch.push(center(part)));
+        bounds.iter().for_each(|part| batch.push(part.center()));
         let sides = batch.sides(solid, region)?;
         for (((bounds, highest), region), is_inside) in left.into_iter().zip(regions).zip(sides) {
-            let inside = if is_inside { Some(center(&bounds)) } else { near };
+            let inside = if is_inside { Some(bounds.center()) } else { near };
             self.push(bounds, highest, inside, region);
         }
         Ok(())
@@ -206,25 +207,6 @@ impl Ord for GapPair {
     fn cmp(&self, other: &Self) -> Ordering {
         other.low.total_cmp(&self.low).then(other.number.cmp(&self.number))
     }
-}
-
-/// What is ordered is ordered by `cmp` alone.
-macro_rules! ordered {
-    ($($name:ident)+) => { $(
-        impl PartialOrd for $name {
-            fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-                Some(self.cmp(other))
-            }
-        }
-
-        impl PartialEq for $name {
-            fn eq(&self, other: &Self) -> bool {
-                self.cmp(other) == Ordering::Equal
-            }
-        }
-
-        impl Eq for $name {}
-    )+ };
 }
 
 ordered! { HighBox GapPair }

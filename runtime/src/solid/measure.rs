@@ -20,7 +20,7 @@ use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
 use super::crossings::crossed;
 use super::cut::{self, LinearField};
-use super::{RegionError, Solid, SolidBatch, center};
+use super::{RegionError, Solid, SolidBatch};
 use crate::boxes::Box3;
 use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
@@ -253,7 +253,7 @@ impl Solid {
         }
         let bounds = cell.bounds();
         let side = |axis: usize| bounds.high[axis] - bounds.low[axis];
-        let at = center(&bounds);
+        let at = bounds.center();
         let splits = |axis: usize| bounds.low[axis] < at[axis] && at[axis] < bounds.high[axis];
         let axis = (1..3).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best });
         if f64::from(side(axis)) <= longest || !splits(axis) {
@@ -294,7 +294,7 @@ impl Solid {
             let steepest = rises.iter().fold(0.0, |most: f64, &rise| most.max(rise));
             let reached = middle.abs() < 0.5 * rises.iter().sum::<f64>() + REACH * linear.residual;
             if depth < MAX_REFINEMENT && reached && linear.residual > MAX_RESIDUAL * steepest {
-                parts.extend(super::cut(&bounds, [2; 3]).into_iter().map(|part| (part, depth + 1)));
+                parts.extend(bounds.cut([2; 3]).into_iter().map(|part| (part, depth + 1)));
                 continue;
             }
             volume += cut::fraction(sides, middle, linear.gradient) * volume_of(&bounds);

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 
-use super::{Solid, SolidBatch, center, cut};
+use super::{Solid, SolidBatch};
 use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::parallel::{join, scatter};
@@ -240,7 +240,7 @@ impl MembershipQuestion<'_> {
         let mut open = VecDeque::from([(cube, around.clone())]);
         let mut asked = 0;
         while let Some((bounds, around)) = open.pop_front() {
-            let parts = cut(&bounds, [2; 3]);
+            let parts = bounds.cut([2; 3]);
             if parts.len() == 1 || asked >= MAX_MEMBERSHIP_BOXES {
                 return Ok(false);
             }
@@ -254,7 +254,7 @@ impl MembershipQuestion<'_> {
                     Some(side) if side != inside => return Ok(false),
                     Some(_) => {}
                     None => {
-                        batch.push(center(&part));
+                        batch.push(part.center());
                         open.push_back((part, region.clone()));
                     }
                 }

@@ -19,11 +19,11 @@ mod bounds;
 mod crossings;
 mod cut;
 mod gap;
-mod halves;
 mod measure;
 mod membership;
 mod overlap;
 mod parts;
+mod ranges;
 
 pub use bounds::{BoundsError, TightBounds};
 pub use gap::Gap;
@@ -276,34 +276,4 @@ impl SolidBatch {
     fn sides(&mut self, solid: &Solid, region: &Region) -> Result<Vec<bool>, EvalError> {
         Ok(self.values(solid, region)?.iter().map(|&field| field >= solid.iso).collect())
     }
-}
-
-/// Cuts a box into equal parts, so many along each axis, x fastest; fewer where f32 has no more numbers
-/// between the sides.
-fn cut(bounds: &Box3, counts: [usize; 3]) -> Vec<Box3> {
-    let sides: [Vec<f32>; 3] = [0, 1, 2].map(|axis| {
-        let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));
-        let side = |part: usize| (low + (high - low) * part as f64 / counts[axis] as f64) as f32;
-        let mut sides: Vec<f32> = (0..=counts[axis]).map(side).collect();
-        sides.dedup();
-        if sides.len() == 1 {
-            // A flat box is one part.
-            sides.push(sides[0]);
-        }
-        sides
-    });
-    let mut parts = Vec::new();
-    for z in sides[2].windows(2) {
-        for y in sides[1].windows(2) {
-            for x in sides[0].windows(2) {
-                parts.push(Box3::new([x[0], y[0], z[0]], [x[1], y[1], z[1]]));
-            }
-        }
-    }
-    parts
-}
-
-/// The middle of a box.
-fn center(bounds: &Box3) -> [f32; 3] {
-    [0, 1, 2].map(|axis| bounds.middle(axis))
 }

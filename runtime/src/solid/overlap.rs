@@ -22,10 +22,11 @@ use std::collections::BinaryHeap;
 use jbt_ir::limits::MAX_OVERLAP_WORK;
 use jbt_ir::watch;
 
-use super::halves::{halves, ranges};
-use super::{Solid, SolidBatch, center, cut};
+use super::ranges::ranges;
+use super::{Solid, SolidBatch};
 use crate::boxes::{Box3, Divisible as _, MAX_PARTS};
 use crate::error::EvalError;
+use crate::ordered::ordered;
 use crate::prune::Region;
 
 /// The part of the work that is for the boxes with the best middles.
@@ -83,19 +84,7 @@ impl Ord for PairBox {
     }
 }
 
-impl PartialOrd for PairBox {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for PairBox {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for PairBox {}
+ordered! { PairBox }
 
 /// A point, and how far both fields are above the iso-value there.
 type BothPoint = (f32, [f32; 3]);
@@ -157,7 +146,7 @@ impl<'a> PairSearch<'a> {
                 self.open = open.into_iter().map(again).collect();
             }
             let Some(first) = self.open.pop() else { break };
-            let parts = cut(&first.bounds, halves(&first.bounds));
+            let parts = first.bounds.halved();
             if parts.len() == 1 {
                 self.keep(first.bounds, first.middle);
             } else if let Some(both) = self.expand(&first, &parts)? {
@@ -180,7 +169,7 @@ impl<'a> PairSearch<'a> {
             }
         }
         let Some((_, bounds)) = best else { return Ok(PairFound::Nothing) };
-        let (_, best) = self.climb(center(&bounds), &bounds)?;
+        let (_, best) = self.climb(bounds.center(), &bounds)?;
         Ok(PairFound::Left(LeftBoxes { longest, are_small, best }))
     }
 
@@ -222,7 +211,7 @@ impl<'a> PairSearch<'a> {
         if let Some(place) = inside.iter().position(|inside| *inside) {
             return Ok(Some(parts[place]));
         }
-        let middles: Vec<[f32; 3]> = parts.iter().map(center).collect();
+        let middles: Vec<[f32; 3]> = parts.iter().map(Box3::center).collect();
         let values = self.values([&parent.regions[0], &parent.regions[1]], &middles)?;
         for ((part, &value), &middle) in parts.iter().zip(&values).zip(&middles) {
             if value > self.best
@@ -232,8 +221,8 @@ impl<'a> PairSearch<'a> {
             }
         }
         let is_large: Vec<bool> = parts.iter().map(|part| part.longest_side() > self.tolerance).collect();
-        for ((part, &value), _) in parts.iter().zip(&values).zip(&is_large).filter(|(_, large)| !**large) {
-            self.keep(*part, value);
+        for ((&part, &value), _) in parts.iter().zip(&values).zip(&is_large).filter(|(_, large)| !**large) {
+            self.keep(part, value);
         }
         let (parts, values) = (pick(&parts, &is_large), pick(&values, &is_large));
         let around: Vec<Box3> = parts.iter().map(|part| grown(part, self.tolerance)).collect();

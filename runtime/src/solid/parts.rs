@@ -15,7 +15,7 @@ use jbt_model::diagnostic::Diagnostics;
 
 use super::gap::{Gap, gap};
 use super::overlap::{LeftBoxes, PairFound, PairSearch, grown};
-use super::{Measure, MeasureError, Measures, RegionError, Solid, center};
+use super::{Measure, MeasureError, Measures, RegionError, Solid};
 use crate::boxes::Box3;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
@@ -235,7 +235,7 @@ impl PartSolids {
                 let mut volume = solid.measure(&settings).run()?.volume;
                 // The box that proves it counts, however small it is.
                 volume.low = volume.low.max(super::measure::volume_of(&bounds));
-                Ok(Relation::Overlapping { at: self.world(center(&bounds)), volume })
+                Ok(Relation::Overlapping { at: self.world(bounds.center()), volume })
             }
         }
     }
@@ -287,7 +287,7 @@ impl PartSolids {
     /// A box around the support of a part, as far as it is looked at; `None` if it is empty.
     fn bounds(&self, part: usize) -> Result<Option<Box3>, PartError> {
         let bounds = match (around_in_f32(self.solid(part).tree()), self.region) {
-            (Ok(bounds), Some(region)) => common(&bounds, &region),
+            (Ok(bounds), Some(region)) => bounds.common(&region),
             (Ok(bounds), None) => bounds,
             (Err(NoBox::Empty), _) => return Ok(None),
             (Err(NoBox::Unbounded), Some(region)) => region,
@@ -301,20 +301,12 @@ impl PartSolids {
     /// Where both may have points that are as near as the tolerance.
     fn common(&self, a: usize, b: usize, tolerance: f32) -> Result<Option<Box3>, PartError> {
         let (Some(first), Some(second)) = (self.bounds(a)?, self.bounds(b)?) else { return Ok(None) };
-        let common = common(&grown(&first, tolerance), &grown(&second, tolerance));
+        let common = grown(&first, tolerance).common(&grown(&second, tolerance));
         Ok(common.is_full().then_some(common))
     }
 
     fn world(&self, point: [f32; 3]) -> [f64; 3] {
         self.tree.origin().world(point.map(f64::from))
-    }
-}
-
-/// What is in both; not full if nothing is.
-fn common(a: &Box3, b: &Box3) -> Box3 {
-    Box3 {
-        low: [0, 1, 2].map(|axis| a.low[axis].max(b.low[axis])),
-        high: [0, 1, 2].map(|axis| a.high[axis].min(b.high[axis])),
     }
 }
 
