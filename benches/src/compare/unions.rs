@@ -129,11 +129,10 @@ fn primitives() -> CheckedTree {
     jbt::Model::new(union).check().expect("the model is good")
 }
 
-fn ours(tree: &CheckedTree, options: Options) -> Polygonized {
+fn ours(tree: &CheckedTree, pool: &rayon::ThreadPool) -> Polygonized {
     let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
     let fineness = Fineness::Resolution(1 << DEPTH);
     let polygonize = Polygonize { region, fineness, verify: false, thin_parts: false, sharp: false };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads");
     pool.install(|| polygonize.mesh(&Compiler::new(), tree).run()).expect("the model has a mesh")
 }
 
@@ -161,12 +160,12 @@ fn rows(tree: &CheckedTree) -> (usize, f64) {
 }
 
 fn row(solid: &'static str, tree: &CheckedTree, program: &str, options: Options) -> ResultRow {
-    let mut contest = Contest::new();
-    let mut triangles = 0;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads");
+    let (mut contest, mut triangles) = (Contest::new(), 0);
     contest.enter_checked(
         Contestant::Ours,
         "",
-        || ours(tree, options),
+        || ours(tree, &pool),
         |made| {
             triangles = made.mesh.triangles.len();
             check(tree, made)
