@@ -79,7 +79,7 @@ impl Program for Kernel {
 
     /// Straight from the caller's planes. What is left behind whole blocks is done with the last block that
     /// ends where the planes do: some points twice, with the same bits. Allocates nothing for up to 48 planes
-    /// and 12 tables.
+    /// and 4 tables.
     fn run(&self, run: Run<'_, '_>) {
         let planes = run.planes(&self.interface);
         if planes.points >= self.block() {
@@ -92,9 +92,10 @@ impl Program for Kernel {
     }
 }
 
-/// Planes up to which a call needs no allocation, and tables.
-const FEW_PLANES: usize = 48;
-const FEW_TABLES: usize = 12;
+/// Planes up to which a call needs no allocation, and tables. Their places are cleared at each call, so there
+/// are no more than most models take.
+const FEW_PLANES: usize = 16;
+const FEW_TABLES: usize = 4;
 /// Planes up to which a block that is filled up is on the stack: a range along each axis; field, gradient and
 /// colour.
 const FEW_INPUTS: usize = 6;

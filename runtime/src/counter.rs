@@ -3,7 +3,7 @@
 //! Points, calls and lanes are counted. Distances are not: they are points times the distances of a point,
 //! which the code's origins tell ([`jbt_ir::domain::counting`]), less what regions left out.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use jbt_model::query::Query;
 
@@ -56,34 +56,57 @@ impl Counters {
     }
 }
 
-/// The counters of an evaluator, shared by threads.
+/// Shards of counters: threads beyond so many share some.
+const SHARDS: usize = 16;
+
+/// The counters of an evaluator, shared by threads. Each thread counts in a shard of its own, so that no two
+/// processors write to one line of memory at each call.
 #[derive(Debug, Default)]
 pub(crate) struct SharedCounters {
+    shards: [CounterShard; SHARDS],
+}
+
+/// Counters of some threads. Processors fetch lines of 64 bytes, often in pairs.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+struct CounterShard {
     calls: AtomicU64,
     points: AtomicU64,
     lanes: AtomicU64,
     pruned: AtomicU64,
 }
 
+thread_local! {
+    /// The shard of this thread: threads take them in turn.
+    static SHARD: usize = {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        NEXT.fetch_add(1, Ordering::Relaxed) % SHARDS
+    };
+}
+
 impl SharedCounters {
     /// Counts a call that left `pruned` distances out at each point.
     pub(crate) fn add(&self, points: usize, lanes: usize, pruned: u64) {
-        self.pruned.fetch_add(pruned.saturating_mul(points as u64), Ordering::Relaxed);
-        self.calls.fetch_add(1, Ordering::Relaxed);
-        self.points.fetch_add(points as u64, Ordering::Relaxed);
-        self.lanes.fetch_add(lanes as u64, Ordering::Relaxed);
+        let shard = &self.shards[SHARD.with(|&shard| shard)];
+        shard.pruned.fetch_add(pruned.saturating_mul(points as u64), Ordering::Relaxed);
+        shard.calls.fetch_add(1, Ordering::Relaxed);
+        shard.points.fetch_add(points as u64, Ordering::Relaxed);
+        shard.lanes.fetch_add(lanes as u64, Ordering::Relaxed);
     }
 
     /// The counters, for a program that computes `evaluations` distances a point where separate walks compute
     /// `separate`.
     pub(crate) fn snapshot(&self, evaluations: u64, separate: u64) -> Counters {
-        let points = self.points.load(Ordering::Relaxed);
-        let pruned = self.pruned.load(Ordering::Relaxed);
+        let sum = |of: fn(&CounterShard) -> &AtomicU64| {
+            self.shards.iter().map(|shard| of(shard).load(Ordering::Relaxed)).fold(0, u64::wrapping_add)
+        };
+        let points = sum(|shard| &shard.points);
+        let pruned = sum(|shard| &shard.pruned);
         let primitive_evaluations = points.saturating_mul(evaluations).saturating_sub(pruned);
         Counters {
-            calls: self.calls.load(Ordering::Relaxed),
+            calls: sum(|shard| &shard.calls),
             points,
-            lanes: self.lanes.load(Ordering::Relaxed),
+            lanes: sum(|shard| &shard.lanes),
             primitive_evaluations,
             evaluations_pruned: pruned,
             evaluations_avoided: points.saturating_mul(separate).saturating_sub(primitive_evaluations),

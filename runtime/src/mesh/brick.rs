@@ -66,6 +66,8 @@ pub(crate) struct At {
     table: u16,
     /// Its index along x, y and z.
     place: [u8; 3],
+    /// The axes along which it is the first, a bit each.
+    lows: u8,
 }
 
 impl At {
@@ -73,6 +75,12 @@ impl At {
     #[inline(always)]
     pub(crate) fn in_table(self) -> usize {
         usize::from(self.table)
+    }
+
+    /// The axes along which it is the first, a bit each.
+    #[inline(always)]
+    pub(crate) fn lows(self) -> u8 {
+        self.lows
     }
 
     /// Its index along x, y and z.
@@ -94,7 +102,8 @@ impl Bricks {
         let at = |number: usize| {
             let [x, y, z] = place(number as u16);
             let table = (x + stride * (y + stride * z)) as u16;
-            At { table, place: [x, y, z].map(|index| index as u8) }
+            let lows = u8::from(x == 0) | u8::from(y == 0) << 1 | u8::from(z == 0) << 2;
+            At { table, place: [x, y, z].map(|index| index as u8), lows }
         };
         let cells = (0..edge.pow(3)).map(at).collect();
         Self { edge, axes, places, neighbours, cells }

@@ -118,11 +118,6 @@ impl Sheets {
         self.pinched >> face & 1 == 1
     }
 
-    /// Whether any low face is pinched.
-    pub(crate) fn pinched_low(&self) -> bool {
-        self.pinched & 0b01_0101 != 0
-    }
-
     /// The edges of a sheet, a bit each.
     pub(crate) const fn edges(&self, sheet: u32) -> u16 {
         let (mut edges, mut edge) = (0, 0);
@@ -400,6 +395,39 @@ impl SheetEdges {
     }
 }
 
+/// What loops over cells ask of a case without flipped faces, inside the lattice.
+#[derive(Clone, Copy)]
+pub(crate) struct CellCase {
+    /// How many sheets there are. None if the surface does not cross the cell.
+    pub(crate) sheets: u8,
+    /// How many edges at the low corner are crossed: each has a quad.
+    pub(crate) quads: u8,
+    /// Whether any low face is pinched.
+    pub(crate) is_pinched_low: bool,
+}
+
+static CASES: [CellCase; 256] = {
+    let mut cases = [CellCase { sheets: 0, quads: 0, is_pinched_low: false }; 256];
+    let mut signs = 0;
+    while signs < 256 {
+        let differs =
+            (signs ^ signs >> 1) & 1 | ((signs ^ signs >> 2) & 1) << 1 | ((signs ^ signs >> 4) & 1) << 2;
+        cases[signs] = CellCase {
+            sheets: DEFAULT[signs].count,
+            quads: differs.count_ones() as u8,
+            is_pinched_low: DEFAULT[signs].pinched & 0b01_0101 != 0,
+        };
+        signs += 1;
+    }
+    cases
+};
+
+/// The case of these signs.
+#[inline(always)]
+pub(crate) fn case(signs: u8) -> CellCase {
+    CASES[usize::from(signs)]
+}
+
 /// The edges of the sheets of every case without flipped faces.
 static DEFAULT_EDGES: [[SheetEdges; 4]; 256] = {
     let mut edges = [[SheetEdges(0); 4]; 256];
@@ -419,6 +447,12 @@ static DEFAULT_EDGES: [[SheetEdges; 4]; 256] = {
 #[inline(always)]
 pub(crate) fn default_edges(signs: u8) -> &'static [SheetEdges] {
     &DEFAULT_EDGES[usize::from(signs)][..usize::from(DEFAULT[usize::from(signs)].count)]
+}
+
+/// The edges of the first sheet of a cell without flipped faces.
+#[inline(always)]
+pub(crate) fn first_edges(signs: u8) -> SheetEdges {
+    DEFAULT_EDGES[usize::from(signs)][0]
 }
 
 /// The edges of each sheet of a cell with flipped faces.

@@ -11,7 +11,7 @@ use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
-use super::cell::{SheetEdges, default_edges, default_sheets, edges, sheets};
+use super::cell::{CellCase, SheetEdges, case, default_edges, edges, sheets};
 use super::report::Sides;
 use super::sample::BrickSamples;
 
@@ -32,8 +32,6 @@ pub(crate) struct CrossedCell {
 /// All crossing cells, in Morton order.
 pub(crate) struct Crossings {
     pub(crate) cells: Vec<CrossedCell>,
-    /// The field at their corners, by groups of bricks.
-    pub(crate) corners: Vec<Vec<[f32; 8]>>,
     /// Where the cells of each brick begin, and the end.
     pub(crate) starts: Vec<usize>,
     /// Where the vertices of each brick begin, and the end.
@@ -54,13 +52,6 @@ impl Crossings {
         &self.cells[self.starts[brick]..self.starts[brick + 1]]
     }
 
-    /// The field at the corners of these cells.
-    pub(crate) fn corners_of(&self, bricks: &Bricks, brick: usize) -> &[[f32; 8]] {
-        let group = brick / bricks.group();
-        let before = self.starts[group * bricks.group()];
-        &self.corners[group][self.starts[brick] - before..self.starts[brick + 1] - before]
-    }
-
     /// The number of vertices.
     pub(crate) fn vertex_count(&self) -> usize {
         self.vertices[self.vertices.len() - 1]
@@ -76,19 +67,25 @@ impl Crossings {
 pub(crate) fn find(
     bricks: &Bricks,
     samples: &BrickSamples,
-    iso: f32,
     progress: &Progress<'_>,
 ) -> Result<Crossings, Cancelled> {
-    let mut found = look(bricks, samples, iso, progress)?;
+    let (mut found, mut counts) = look(bricks, samples, progress)?;
     let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
-    found.numbered(bricks, flipped_faces, progress)
+    if flipped_faces > 0 {
+        for (brick, counts) in counts.iter_mut().enumerate() {
+            progress.breathe()?;
+            let cells = &mut found.cells[found.starts[brick]..found.starts[brick + 1]];
+            if cells.iter().any(|cell| cell.flips != 0) {
+                *counts = number_brick(bricks, brick, cells);
+            }
+        }
+    }
+    Ok(found.counted(counts, flipped_faces))
 }
 
 /// The crossing cells of all bricks, before faces are flipped.
 pub(crate) struct UnflippedCells {
     pub(crate) cells: Vec<CrossedCell>,
-    /// See [`Crossings::corners`].
-    pub(crate) corners: Vec<Vec<[f32; 8]>>,
     /// Where the cells of each brick begin, and the end.
     pub(crate) starts: Vec<usize>,
     /// Cells with a low face that is pinched by default: the brick and the cell, ascending.
@@ -97,30 +94,35 @@ pub(crate) struct UnflippedCells {
 }
 
 impl UnflippedCells {
-    /// Numbers the vertices, once faces are flipped.
+    /// Numbers the vertices anew, once faces are flipped or cells are left out.
     pub(crate) fn numbered(
-        self,
+        mut self,
         bricks: &Bricks,
         flipped_faces: u64,
         progress: &Progress<'_>,
     ) -> Result<Crossings, Cancelled> {
         span!("number");
-        let Self { mut cells, corners, starts, suspects: _, cut } = self;
-        let counts = number_vertices(bricks, &starts, &mut cells, progress)?;
+        let counts = number_vertices(bricks, &self.starts, &mut self.cells, progress)?;
+        Ok(self.counted(counts, flipped_faces))
+    }
+
+    /// The crossings, from what each brick has.
+    fn counted(self, counts: Vec<BrickCounts>, flipped_faces: u64) -> Crossings {
+        let Self { cells, starts, suspects: _, cut } = self;
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
         let quads = self::starts(counts.iter().map(|count| count.quads));
         let is_open = counts.iter().any(|count| count.is_open);
-        Ok(Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut, is_open })
+        Crossings { cells, starts, vertices, quads, flipped_faces, cut, is_open }
     }
 }
 
-/// Finds the crossing cells.
+/// Finds the crossing cells, with vertices numbered as if no face were to be flipped, and what each brick has
+/// then.
 pub(crate) fn look(
     bricks: &Bricks,
     samples: &BrickSamples,
-    iso: f32,
     progress: &Progress<'_>,
-) -> Result<UnflippedCells, Cancelled> {
+) -> Result<(UnflippedCells, Vec<BrickCounts>), Cancelled> {
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
@@ -129,39 +131,38 @@ pub(crate) fn look(
         progress.breathe()?;
         let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
         for brick in index * group..bricks.len().min((index + 1) * group) {
-            samples.gather(bricks, brick, &mut signs.values);
-            signs.find(bricks, iso, brick, &mut found);
+            samples.gather_inside(bricks, brick, &mut signs.points);
+            signs.find(bricks, brick, &mut found);
         }
-        found.corners.shrink_to_fit();
         Ok(found)
     };
     let found: Result<Vec<FoundCells>, Cancelled> =
         scatter(|_| (0..groups).into_par_iter().map_init(|| Signs::new(bricks), of_group).collect());
     let found = found?;
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
-    let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
-    let mut corners = Vec::with_capacity(groups);
+    let (mut suspects, mut cut) = (Vec::new(), Sides::default());
+    let (mut counts, mut cell_counts) = (Vec::with_capacity(bricks.len()), Vec::with_capacity(bricks.len()));
     for found in found {
         progress.breathe()?;
         suspects.extend(
             found.suspects.iter().map(|&(brick, cell)| (brick as usize, cells.len() + cell as usize)),
         );
         cells.extend_from_slice(&found.cells);
+        cell_counts.extend_from_slice(&found.cell_counts);
         counts.extend_from_slice(&found.counts);
-        corners.push(found.corners);
         cut.add(found.cut);
     }
-    Ok(UnflippedCells { cells, corners, starts: starts(counts.into_iter()), suspects, cut })
+    let starts = starts(cell_counts.into_iter());
+    Ok((UnflippedCells { cells, starts, suspects, cut }, counts))
 }
 
 /// The crossing cells of some bricks.
 #[derive(Default)]
 struct FoundCells {
     cells: Vec<CrossedCell>,
-    /// The field at their corners.
-    corners: Vec<[f32; 8]>,
-    /// The number of cells of each brick.
-    counts: Vec<usize>,
+    /// The number of cells of each brick, and what else it has.
+    cell_counts: Vec<usize>,
+    counts: Vec<BrickCounts>,
     /// Cells with a low face that is pinched by default: the brick, and the index among the found cells.
     suspects: Vec<(u32, u32)>,
     cut: Sides,
@@ -170,14 +171,14 @@ struct FoundCells {
 impl FoundCells {
     /// Room for this many cells.
     fn with_room(cells: usize) -> Self {
-        Self { cells: Vec::with_capacity(cells), corners: Vec::with_capacity(cells), ..Self::default() }
+        Self { cells: Vec::with_capacity(cells), ..Self::default() }
     }
 }
 
 /// Room for the signs of one brick.
 struct Signs {
-    /// The field at the points of its closed box.
-    values: Vec<f32>,
+    /// The number of points in its closed box.
+    count: usize,
     /// A bit for each point: whether it is inside. Then, step by step, the bits of points beside it, too.
     points: Vec<u8>,
     pairs: Vec<u8>,
@@ -189,41 +190,42 @@ struct Signs {
 
 impl Signs {
     fn new(bricks: &Bricks) -> Self {
-        let values = vec![0.0; bricks.table_len()];
-        let padded = vec![0; values.len() + bricks.stride().pow(2)];
+        let count = bricks.table_len();
+        let padded = vec![0; count + bricks.stride().pow(2)];
         let crossed = vec![CrossedCell::default(); bricks.edge.pow(3) + 1];
-        Self { values, points: padded.clone(), pairs: padded.clone(), cells: padded, crossed }
+        Self { count, points: padded.clone(), pairs: padded.clone(), cells: padded, crossed }
     }
 
     /// Appends the crossing cells of a brick.
-    fn find(&mut self, bricks: &Bricks, iso: f32, brick: usize, found: &mut FoundCells) {
-        compare(iso, &self.values, &mut self.points);
+    fn find(&mut self, bricks: &Bricks, brick: usize, found: &mut FoundCells) {
         let (extent, sides) = (bricks.extent(brick), bricks.sides(brick));
         if sides != 0 {
             self.find_cut(bricks, extent, sides, &mut found.cut);
         }
         let is_cut = extent.iter().any(|&cells| cells < bricks.edge);
-        let before = found.cells.len();
+        let (before, mut counts) = (found.cells.len(), BrickCounts::default());
         if is_cut || self.is_mixed() {
             self.join(bricks.stride());
             if is_cut {
                 self.clear_beyond(bricks.stride(), extent);
             }
-            self.push_cells(bricks, brick, found);
+            counts = self.push_cells(bricks, brick, found);
         }
-        found.counts.push(found.cells.len() - before);
+        let cells = &mut found.cells[before..];
+        found.cell_counts.push(cells.len());
+        found.counts.push(if sides == 0 { counts } else { number_brick(bricks, brick, cells) });
     }
 
     /// Whether some points are inside and some are not.
     fn is_mixed(&self) -> bool {
-        let points = &self.points[..self.values.len()];
+        let points = &self.points[..self.count];
         let (any, all) = points.iter().fold((0, 1), |(any, all), bit| (any | bit, all & bit));
         any != all
     }
 
     /// The signs of all cells, from the signs of points: first pairs along x, then squares, then cubes.
     fn join(&mut self, stride: usize) {
-        let count = self.values.len();
+        let count = self.count;
         join::<1>(&self.points, 1, &mut self.cells[..count]);
         join::<2>(&self.cells, stride, &mut self.pairs[..count]);
         join::<4>(&self.pairs, stride * stride, &mut self.cells[..count]);
@@ -256,10 +258,12 @@ impl Signs {
         }
     }
 
-    fn push_cells(&mut self, bricks: &Bricks, brick: usize, found: &mut FoundCells) {
+    /// Appends the crossing cells of a brick, and numbers their vertices as inside the lattice. Returns what
+    /// the brick has there.
+    fn push_cells(&mut self, bricks: &Bricks, brick: usize, found: &mut FoundCells) -> BrickCounts {
         let stride = bricks.stride();
         let layer = stride * stride;
-        let (before, mut count) = (found.cells.len(), 0);
+        let (before, mut count, mut counts) = (found.cells.len(), 0, BrickCounts::default());
         for (octet, at) in bricks.octets().enumerate() {
             let cells = &self.cells[at.in_table()..][..layer + stride + 2];
             let pairs = [0, stride, layer, layer + stride]
@@ -274,39 +278,23 @@ impl Signs {
             let first = count;
             let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
-                self.crossed[count] =
-                    CrossedCell { vertex: 0, number: (octet as u16) << 3 | rest, signs, flips: 0 };
-                count += usize::from(signs != 0 && signs != u8::MAX);
-                pinched |= default_sheets(signs).pinched_low();
+                let CellCase { sheets, quads, is_pinched_low } = case(signs);
+                let number = (octet as u16) << 3 | rest;
+                self.crossed[count] = CrossedCell { vertex: counts.vertices, number, signs, flips: 0 };
+                count += usize::from(sheets != 0);
+                counts.vertices += u32::from(sheets);
+                counts.quads += usize::from(quads);
+                pinched |= is_pinched_low;
             }
             if pinched {
                 let cells = (before..).zip(&self.crossed[..count]).skip(first);
-                let pinched = cells.filter(|(_, cell)| default_sheets(cell.signs).pinched_low());
+                let pinched = cells.filter(|(_, cell)| case(cell.signs).is_pinched_low);
                 found.suspects.extend(pinched.map(|(index, _)| (brick as u32, index as u32)));
             }
         }
-        let crossed = &self.crossed[..count];
-        found.cells.extend_from_slice(crossed);
-        let corners = |cell: &CrossedCell| corners(&self.values, bricks.at(cell.number).in_table(), stride);
-        found.corners.extend(crossed.iter().map(corners));
+        found.cells.extend_from_slice(&self.crossed[..count]);
+        counts
     }
-}
-
-/// Which values are inside, 1 or 0 each.
-#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn compare(iso: f32, values: &[f32], inside: &mut [u8]) {
-    for (bit, value) in inside.iter_mut().zip(values) {
-        *bit = u8::from(*value >= iso);
-    }
-}
-
-/// The field at the corners of the cell at a place of a table.
-#[inline(always)]
-fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
-    let layer = stride * stride;
-    let table = &table[at..at + layer + stride + 2];
-    let (front, back) = (&table[..stride + 2], &table[layer..]);
-    [front[0], front[1], front[stride], front[stride + 1], back[0], back[1], back[stride], back[stride + 1]]
 }
 
 /// Combines the bits at each place with the bits `step` places further, shifted by `WIDTH`.
@@ -375,7 +363,7 @@ pub(crate) fn below(
 
 /// What a brick has.
 #[derive(Clone, Copy, Default)]
-struct BrickCounts {
+pub(crate) struct BrickCounts {
     vertices: u32,
     quads: usize,
     /// Whether the mesh has a rim here.
@@ -407,27 +395,6 @@ fn number_vertices<'a>(
     Ok(counts?.concat())
 }
 
-/// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low
-/// corner.
-#[derive(Clone, Copy)]
-struct CellCounts {
-    sheets: u8,
-    quads: u8,
-}
-
-static COUNTS: [CellCounts; 256] = {
-    let mut counts = [CellCounts { sheets: 0, quads: 0 }; 256];
-    let mut signs = 0;
-    while signs < 256 {
-        let differs =
-            (signs ^ signs >> 1) & 1 | ((signs ^ signs >> 2) & 1) << 1 | ((signs ^ signs >> 4) & 1) << 2;
-        let sheets = default_sheets(signs as u8).count() as u8;
-        counts[signs] = CellCounts { sheets, quads: differs.count_ones() as u8 };
-        signs += 1;
-    }
-    counts
-};
-
 /// Numbers the vertices of a brick, and counts them and the quads.
 fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> BrickCounts {
     let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
@@ -435,7 +402,7 @@ fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> Bri
     for cell in cells {
         cell.vertex = counts.vertices;
         if sides == 0 && cell.flips == 0 {
-            let CellCounts { sheets, quads } = COUNTS[usize::from(cell.signs)];
+            let CellCase { sheets, quads, .. } = case(cell.signs);
             counts.vertices += u32::from(sheets);
             counts.quads += usize::from(quads);
             continue;

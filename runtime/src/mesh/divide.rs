@@ -14,6 +14,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use jbt_ir::limits::MAX_BRICKS;
+
 use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, SELF, box_of};
@@ -36,7 +38,7 @@ pub(crate) struct BrickDivision<R> {
     /// Counts of boxes.
     pub(crate) boxes: BoxCounts,
     /// The boxes of [`CHUNK`] cells along an edge that the surface may cross, and their regions, if bricks
-    /// are smaller and chunks are wanted.
+    /// are smaller or larger and chunks are wanted.
     pub(crate) chunks: Option<Kept<R>>,
 }
 
@@ -81,16 +83,30 @@ type Descended<R> = (BoxLevel<R>, Option<Kept<R>>);
 
 /// The edge in cells of the boxes that the search for thin parts uses, for any edge of bricks.
 pub(crate) const CHUNK: usize = 8;
-/// The edge of bricks, if the points are cheap.
-const DEFAULT_BRICK: usize = 8;
-/// The mean ops of a point from which on bricks are halved: fewer points for more bricks.
-const COSTLY: u64 = 200;
+/// How many bricks there may be, and the edge of the largest ones, if nobody says how large they are.
+#[derive(Clone, Copy)]
+pub(crate) struct BrickLimits {
+    pub(crate) count: usize,
+    pub(crate) edge: usize,
+}
+
+impl BrickLimits {
+    /// Of a mesh that is made at once: large bricks have fewer points on their sides and fewer calls.
+    pub(crate) const WHOLE: Self = Self { count: MAX_BRICKS, edge: 16 };
+    /// Of a mesh that is made in pieces: what is touched is made by whole bricks.
+    pub(crate) const PIECES: Self = Self { count: MAX_BRICKS, edge: 8 };
+}
+
+/// For bricks of an edge, the mean ops of a point from which on they are halved: fewer ops at each point for
+/// more bricks.
+const COSTLY: [(usize, u64); 2] = [(16, 256), (8, 200)];
 
 impl<R> BoxLevel<R> {
-    /// Whether a point is costly, on average.
-    fn is_costly<F: Field<Region = R>>(&self, field: &F) -> bool {
+    /// Whether a point is costly, on average, for bricks of this edge.
+    fn is_costly<F: Field<Region = R>>(&self, field: &F, edge: usize) -> bool {
+        let Some((_, limit)) = COSTLY.iter().find(|(of, _)| *of == edge) else { return false };
         let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
-        ops >= COSTLY.saturating_mul(self.regions.len() as u64) && ops > 0
+        ops >= limit.saturating_mul(self.regions.len() as u64) && ops > 0
     }
 }
 
@@ -114,17 +130,19 @@ struct BrickDivider<'a, 'hook, F: Field> {
     progress: &'a Progress<'hook>,
 }
 
-/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept.
+/// Divides a lattice with these coordinates into bricks. No more boxes of one size are kept than the limits
+/// say.
 /// What is out of the scope is not looked at.
 pub(crate) fn divide<F: Field>(
     field: &F,
     axes: [Vec<f32>; 3],
     (options, scope): (&Options, DivisionScope<'_>),
-    limit: usize,
+    limits: BrickLimits,
     progress: &Progress<'_>,
 ) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {
     span!("divide");
-    let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
+    let mut edge = options.brick.unwrap_or(limits.edge);
+    let limit = limits.count;
     let divider = BrickDivider { field, axes: &axes, scope, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
     // The search for thin parts wants the same boxes around each box, whatever the edge of bricks is: the
@@ -140,9 +158,19 @@ pub(crate) fn divide<F: Field>(
         (level, chunks) = divider.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
         progress.add(1.0 / f64::from(halvings))?;
     }
-    if options.brick.is_none() && level.is_costly(field) {
+    while options.brick.is_none() && level.is_costly(field, edge) {
         (level, chunks) = divider.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
         edge /= 2;
+    }
+    if options.thin_parts && edge > CHUNK {
+        // The counts of boxes are those of the bricks.
+        let (mut size, mut counted) = (edge / 2, BoxCounts::default());
+        let mut inner = divider.descend(&level, size, &mut counted)?;
+        while size > CHUNK {
+            size /= 2;
+            inner = divider.descend(&inner, size, &mut counted)?;
+        }
+        chunks = Some((inner.places, inner.regions));
     }
     let BoxLevel { places, regions, neighbours } = level;
     Ok(BrickDivision { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes, chunks })
@@ -490,7 +518,14 @@ mod tests {
     fn divided(cells: [usize; 3], limit: usize) -> Result<BrickDivision<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
-        divide(&Ball, axes, (&options, DivisionScope::Everything), limit, &Progress::new(&mut |_| true, EACH))
+        let limits = BrickLimits { count: limit, ..BrickLimits::PIECES };
+        divide(
+            &Ball,
+            axes,
+            (&options, DivisionScope::Everything),
+            limits,
+            &Progress::new(&mut |_| true, EACH),
+        )
     }
 
     #[test]

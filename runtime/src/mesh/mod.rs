@@ -48,6 +48,7 @@ mod crossing;
 mod divide;
 mod error;
 mod field;
+mod fill;
 mod fold;
 mod indexed;
 mod lattice;
@@ -66,8 +67,6 @@ mod stage;
 mod surface;
 mod thin;
 mod vertex;
-
-use jbt_ir::limits::MAX_BRICKS;
 
 pub use block::{BlockError, BlockWork, LatticeBlock, MeshBlock, VertexName, join_blocks};
 pub use check::{Defect, check_manifold, is_closed};
@@ -90,9 +89,10 @@ use crate::job::{Hook, Job};
 use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
-use divide::BrickDivision;
+use divide::{BrickDivision, BrickLimits};
 use fold::{SharpQuad, SideCorner};
 use scope::DivisionScope;
+use surface::VertexSet;
 use vertex::batch::VertexSource;
 use vertex::side::SharpVertex;
 
@@ -128,8 +128,13 @@ pub(crate) fn extract_hooked<F: Field>(
 ) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
     options.check()?;
     let progress = Progress::new(hook, EACH);
-    let division =
-        divide::divide(field, lattice.axes(), (options, DivisionScope::Everything), MAX_BRICKS, &progress)?;
+    let division = divide::divide(
+        field,
+        lattice.axes(),
+        (options, DivisionScope::Everything),
+        BrickLimits::WHOLE,
+        &progress,
+    )?;
     let Polygons { mesh, mut report, crossings, sharp } = polygonize(field, &division, options, &progress)?;
     meshed(&report);
     if options.thin_parts {
@@ -189,16 +194,17 @@ fn polygonize<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<Polygons, MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    let samples = sample::sample(field, (bricks, regions), None, progress)?;
-    let mut crossings = crossing::find(bricks, &samples, options.iso, progress)?;
+    let mut samples = sample::sample(field, (bricks, regions), (options.iso, None), progress)?;
+    let crossings = crossing::find(bricks, &samples, progress)?;
+    samples.forget_inside();
     let field_evaluations = samples.len() as u64;
-    drop(samples);
     let count = crossings.vertex_count();
     if u32::try_from(count).is_err() {
         return Err(MeshError::TooManyVertices { vertices: count as u64 });
     }
-    let source = VertexSource { field, options, bricks, regions, crossings: &crossings };
+    let source = VertexSource { field, options, bricks, regions, samples: &samples, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
+    drop(samples);
     let mut report = MeshReport {
         cut_sides: crossings.cut,
         boxes: boxes.examined,
@@ -219,13 +225,14 @@ fn polygonize<F: Field>(
         thin: None,
     };
     report.cut_sides.add(boxes.cut);
-    crossings.corners = Vec::new();
     let (of, go_on) = ((bricks, &crossings), || progress.breathe());
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
-    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions, go_on)?;
+    let doubtful = VertexSet::new(count, &done.doubtful);
+    let around;
+    (mesh.triangles, around) = surface::triangles(bricks, &crossings, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
-    surface::repair_normals(&mut mesh, of, &done.doubtful, progress)?;
+    surface::repair_normals(&mut mesh, &around, &done.doubtful, progress)?;
     Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
 }

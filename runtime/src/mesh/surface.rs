@@ -8,27 +8,29 @@ use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
-use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
+use super::brick::{At, Bricks, NONE, cell_sides, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
-use super::crossing::Crossings;
+use super::crossing::{CrossedCell, Crossings};
+use super::fill::{FilledVector, VectorPart};
 use super::indexed::Mesh;
 
-/// The triangles of all quads, in the order of the cells that own them. It asks at times whether to go on.
+/// The triangles of all quads, in the order of the cells that own them, and which quads have one of some
+/// vertices. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
     bricks: &Bricks,
     crossings: &Crossings,
-    positions: &[[f32; 3]],
+    (positions, marked): (&[[f32; 3]], &VertexSet),
     go_on: impl Fn() -> Result<(), E> + Sync,
-) -> Result<Vec<[u32; 3]>, E> {
+) -> Result<(Vec<[u32; 3]>, Vec<usize>), E> {
     span!("triangles");
     let group = bricks.group();
-    let mut triangles = vec![[0; 3]; 2 * crossings.quad_count()];
-    let groups = split(&mut triangles, &crossings.quads, group, 2);
-    let fill = |around: &mut Around, (index, triangles): (usize, &mut [[u32; 3]])| {
+    let mut triangles = FilledVector::new(2 * crossings.quad_count());
+    let groups = triangles.parts(&crossings.quads, group, 2);
+    let fill = |around: &mut Around, (index, triangles): (usize, VectorPart<'_, [u32; 3]>)| {
         span!("triangles of some bricks");
         go_on()?;
-        let mut rest = triangles.as_chunks_mut().0;
-        let first = index * group;
+        let all = triangles.open().as_chunks_mut().0;
+        let (first, mut rest) = (index * group, &mut *all);
         for brick in first..bricks.len().min(first + group) {
             let count = crossings.quads[brick + 1] - crossings.quads[brick];
             if count == 0 {
@@ -36,14 +38,45 @@ pub(crate) fn triangles<E: Send>(
             }
             let (pairs, after) = std::mem::take(&mut rest).split_at_mut(count);
             rest = after;
-            let lows = around.find_quads(bricks, crossings, brick);
-            around.fill(bricks, crossings, brick, lows);
+            around.fill(bricks, crossings, brick);
             split_quads(around, positions, pairs);
         }
-        Ok(())
+        Ok(marked.quads_with(all, crossings.quads[first]))
     };
-    scatter(|_| groups.into_par_iter().enumerate().try_for_each_init(|| Around::new(bricks), fill))?;
-    Ok(triangles)
+    let found: Result<Vec<Vec<usize>>, E> =
+        scatter(|_| groups.into_par_iter().enumerate().map_init(|| Around::new(bricks), fill).collect());
+    Ok((triangles.finish(), found?.concat()))
+}
+
+/// A set of vertices that is asked at each quad: a bit for each vertex, if any is in it.
+pub(crate) struct VertexSet {
+    words: Vec<u64>,
+}
+
+impl VertexSet {
+    /// No vertex.
+    pub(crate) const NONE: Self = Self { words: Vec::new() };
+
+    /// Some vertices, of this many.
+    pub(crate) fn new(count: usize, vertices: &[u32]) -> Self {
+        if vertices.is_empty() {
+            return Self::NONE;
+        }
+        let mut words = vec![0; count.div_ceil(64)];
+        vertices.iter().for_each(|vertex| words[(vertex / 64) as usize] |= 1 << (vertex % 64));
+        Self { words }
+    }
+
+    /// Which of these quads, counted from the first one, have a vertex of the set.
+    fn quads_with(&self, pairs: &[[[u32; 3]; 2]], first: usize) -> Vec<usize> {
+        if self.words.is_empty() {
+            return Vec::new();
+        }
+        let bit = |vertex: u32| self.words[(vertex / 64) as usize] >> (vertex % 64) & 1;
+        // Whatever the diagonal is, these are the four corners: see `halves`.
+        let has_any = |[[q, r, _], [_, s, p]]: &[[u32; 3]; 2]| bit(*p) | bit(*q) | bit(*r) | bit(*s) == 1;
+        (first..).zip(pairs).filter(|(_, pair)| has_any(pair)).map(|(quad, _)| quad).collect()
+    }
 }
 
 /// A crossed cell: its first vertex, and the sheets of its edges.
@@ -51,6 +84,34 @@ pub(crate) fn triangles<E: Send>(
 struct CellVertices {
     vertex: u32,
     sheets: SheetNumbers,
+}
+
+/// What makes entries of the cells of a brick.
+struct CellEntry {
+    /// The brick's first vertex.
+    vertex: u32,
+    /// The sides of the lattice that the brick touches.
+    sides: u8,
+    extent: [usize; 3],
+}
+
+impl CellEntry {
+    fn new(bricks: &Bricks, crossings: &Crossings, brick: usize) -> Self {
+        let vertex = crossings.vertices[brick] as u32;
+        Self { vertex, sides: bricks.sides(brick), extent: bricks.extent(brick) }
+    }
+
+    #[inline(always)]
+    fn vertices(&self, cell: &CrossedCell, at: At) -> CellVertices {
+        let mut sheets = default_numbers(cell.signs);
+        if self.sides != 0 || cell.flips != 0 {
+            let sides = cell_sides(self.sides, self.extent, at.place());
+            if sides != 0 || cell.flips != 0 {
+                sheets = sheets_with_quads(cell.signs, cell.flips, sides).numbers();
+            }
+        }
+        CellVertices { vertex: self.vertex + cell.vertex, sheets }
+    }
 }
 
 /// One of the four cells around an edge, relative to the last one.
@@ -98,10 +159,9 @@ impl Around {
         Self { table, chosen: Vec::new(), quads: Vec::new(), turns, first, steps }
     }
 
-    /// Fills the part of the table that is read. `lows` are the sets of axes along which cells with quads are
-    /// the brick's first ones.
-    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, lows: u8) {
-        self.push(bricks, crossings, brick, 0, self.first);
+    /// Finds the quads of a brick, and fills the part of the table that they read.
+    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) {
+        let lows = self.enter_own(bricks, crossings, brick);
         // The cells around an edge are back along two axes at most.
         for below in 1..7 {
             if (0..8).all(|low| lows >> low & 1 == 0 || low & below != below) {
@@ -114,16 +174,43 @@ impl Around {
                 let last = number(is_below.map(|is| if is { bricks.edge - 1 } else { 0 }));
                 let back: usize =
                     (0..3).filter(|&axis| is_below[axis]).map(|axis| bricks.edge * self.steps[axis]).sum();
-                self.push(bricks, crossings, other as usize, last, self.first.wrapping_sub(back));
+                self.enter_layer(bricks, crossings, other as usize, last, self.first.wrapping_sub(back));
             }
         }
     }
 
+    /// Enters the cells of a brick into the table, and finds its quads: crossed edges at the low corners of
+    /// its cells with all four cells around them. Returns the low sides of the brick that these cells touch,
+    /// as a set of sets of axes.
+    fn enter_own(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
+        let enter = CellEntry::new(bricks, crossings, brick);
+        let cut = enter.sides & 1 | enter.sides >> 1 & 2 | enter.sides >> 2 & 4;
+        let cells = crossings.of(brick);
+        self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
+        // Without a branch, which would be mispredicted for every third edge: an entry that is not to stay is
+        // overwritten.
+        let (mut count, mut lows) = (0, 0);
+        for cell in cells {
+            let at = bricks.at(cell.number);
+            let place = at.in_table() + self.first;
+            self.table[place] = enter.vertices(cell, at);
+            let low = at.lows();
+            lows |= 1 << low;
+            for axis in 0..3 {
+                let end = cell.signs >> (1 << axis) & 1;
+                self.quads[count] = 8 * place as u32 + 2 * axis as u32 + u32::from(end);
+                let is_there = low & cut & !(1 << axis) == 0;
+                count += usize::from((cell.signs ^ end) & 1 == 1 && is_there);
+            }
+        }
+        debug_assert_eq!(count, crossings.quads[brick + 1] - crossings.quads[brick]);
+        lows
+    }
+
     /// Enters into the table the cells of a brick whose number has all of these bits, relative to the brick's
     /// first cell.
-    fn push(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
-        let vertex = crossings.vertices[brick] as u32;
-        let sides = bricks.sides(brick);
+    fn enter_layer(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
+        let enter = CellEntry::new(bricks, crossings, brick);
         let cells = crossings.of(brick);
         // First their indices, without a branch, which would be mispredicted for every third cell.
         let mut count = 0;
@@ -134,42 +221,9 @@ impl Around {
         }
         for &index in &self.chosen[..count] {
             let cell = &cells[usize::from(index)];
-            let (mut sheets, at) = (default_numbers(cell.signs), bricks.at(cell.number));
-            if sides != 0 || cell.flips != 0 {
-                let sides = cell_sides(sides, bricks.extent(brick), at.place());
-                if sides != 0 || cell.flips != 0 {
-                    sheets = sheets_with_quads(cell.signs, cell.flips, sides).numbers();
-                }
-            }
-            let at = first.wrapping_add(at.in_table());
-            self.table[at] = CellVertices { vertex: vertex + cell.vertex, sheets };
+            let at = bricks.at(cell.number);
+            self.table[first.wrapping_add(at.in_table())] = enter.vertices(cell, at);
         }
-    }
-
-    /// Finds the quads of a brick: crossed edges at the low corners of its cells with all four cells around
-    /// them. Returns the low sides of the brick that these cells touch, as a set of sets of axes.
-    fn find_quads(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
-        let sides = bricks.sides(brick);
-        let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
-        let cells = crossings.of(brick);
-        self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
-        // Without a branch, which would be mispredicted for every third edge: an entry that is not to stay is
-        // overwritten.
-        let (mut count, mut lows) = (0, 0);
-        for cell in cells {
-            let code = 8 * (bricks.at(cell.number).in_table() + self.first) as u32;
-            let is_low = |axis: usize| u8::from(cell.number & (LAST >> (2 - axis)) == 0) << axis;
-            let low = is_low(0) | is_low(1) | is_low(2);
-            lows |= 1 << low;
-            for axis in 0..3 {
-                let end = cell.signs >> (1 << axis) & 1;
-                self.quads[count] = code + 2 * axis as u32 + u32::from(end);
-                let is_there = low & cut & !(1 << axis) == 0;
-                count += usize::from((cell.signs ^ end) & 1 == 1 && is_there);
-            }
-        }
-        debug_assert_eq!(count, crossings.quads[brick + 1] - crossings.quads[brick]);
-        lows
     }
 
     /// Visits the quads of a brick: with their places among these, the last cell's place in the table, and
@@ -181,8 +235,7 @@ impl Around {
         brick: usize,
         mut visit: impl FnMut(usize, usize, [(u32, u32); 4]),
     ) {
-        let lows = self.find_quads(bricks, crossings, brick);
-        self.fill(bricks, crossings, brick, lows);
+        self.fill(bricks, crossings, brick);
         for quad in 0..crossings.quads[brick + 1] - crossings.quads[brick] {
             let code = self.quads[quad];
             let (at, turn) = ((code / 8) as usize, self.turns[(code % 8) as usize]);
@@ -197,9 +250,6 @@ impl Around {
         vertex + sheets.at(corner.place)
     }
 }
-
-/// The bits of z in the number of a cell; the bits of y and x are one and two places below.
-const LAST: u16 = 0b100_1001_0010_0100;
 
 /// The two triangles of each quad of a brick.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
@@ -224,10 +274,11 @@ pub(super) fn halves([p, q, r, s]: [u32; 4], at: impl Fn(u32) -> [f32; 3]) -> [[
     [[q, r, d], [e, s, p]]
 }
 
-/// Repairs the normals of some vertices, given in ascending order, by their triangles: see [`judged`].
+/// Repairs the normals of some vertices by their triangles, which the quads have that are given in ascending
+/// order: see [`judged`].
 pub(crate) fn repair_normals(
     mesh: &mut Mesh,
-    (bricks, crossings): (&Bricks, &Crossings),
+    quads: &[usize],
     vertices: &[u32],
     progress: &Progress<'_>,
 ) -> Result<(), Cancelled> {
@@ -237,9 +288,9 @@ pub(crate) fn repair_normals(
     }
     let Mesh { positions, normals, triangles, .. } = mesh;
     let mut doubtful = DoubtfulNormals::new(0, normals.len(), vertices.iter().copied());
-    for brick in bricks_around(bricks, crossings, vertices) {
+    for some in quads.chunks(QUADS_AT_ONCE) {
         progress.breathe()?;
-        doubtful.add(&triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]], positions);
+        some.iter().for_each(|&quad| doubtful.add(&triangles[2 * quad..2 * quad + 2], positions));
     }
     for (&vertex, &sum) in vertices.iter().zip(doubtful.sums()) {
         let normal = &mut normals[vertex as usize];
@@ -247,6 +298,9 @@ pub(crate) fn repair_normals(
     }
     Ok(())
 }
+
+/// Quads whose areas take less than a millisecond.
+const QUADS_AT_ONCE: usize = 1 << 13;
 
 /// The areas of the triangles of some vertices.
 pub(crate) struct DoubtfulNormals {
@@ -269,7 +323,7 @@ impl DoubtfulNormals {
         Self { first, places, sums }
     }
 
-    /// Adds triangles.
+    /// Adds triangles. The order counts: sums of the same areas in another order are rounded otherwise.
     pub(crate) fn add(&mut self, triangles: &[[u32; 3]], positions: &[[f32; 3]]) {
         let place =
             |vertex: u32| self.places.get(vertex.wrapping_sub(self.first) as usize).copied().unwrap_or(0);
@@ -304,31 +358,6 @@ pub(crate) fn judged(normal: [f32; 3], sum: [f64; 3]) -> [f32; 3] {
     } else {
         normal
     }
-}
-
-/// The bricks that have triangles of some vertices, both ascending. A quad belongs to the last cell around
-/// its edge, so these are the vertices' own bricks and the bricks above. The order makes sums the same for
-/// bricks of any size.
-fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Vec<usize> {
-    let (mut own, mut around) = (0, Vec::new());
-    let mut last = None;
-    for &vertex in vertices {
-        while crossings.vertices[own + 1] <= vertex as usize {
-            own += 1;
-        }
-        if last == Some(own) {
-            continue;
-        }
-        last = Some(own);
-        for above in 0..8 {
-            let steps = [0, 1, 2].map(|axis| (above >> axis & 1) as i8);
-            let brick = bricks.neighbours[own][direction(steps)];
-            around.extend((brick != NONE).then_some(brick as usize));
-        }
-    }
-    around.sort_unstable();
-    around.dedup();
-    around
 }
 
 /// The area vector of a triangle, along its normal and as long as twice its area.

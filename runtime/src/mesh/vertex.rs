@@ -20,9 +20,9 @@ use crate::parallel::*;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use jbt_model::orientation::Orientation;
 
-use super::brick::split;
 use super::error::MeshError;
 use super::field::Field;
+use super::fill::{FilledVector, VectorPart};
 use super::indexed::{Attribute, Mesh};
 use super::pull::{LANES, VertexLanes, pull_lanes};
 use super::stage::MeshStage;
@@ -58,26 +58,15 @@ pub(crate) fn finish<F: Field>(
         return Err(MeshError::Width { name: name.clone(), width: *width });
     }
     let widths: Vec<usize> = attributes.iter().map(|(_, width)| *width).collect();
-    let attribute =
-        |(name, width): (String, usize)| Attribute { name, width, values: vec![0.0; width * count] };
-    let mut mesh = Mesh {
-        origin: [0.0; 3],
-        orientation: Orientation::default(),
-        positions: vec![[0.0; 3]; count],
-        normals: vec![[0.0; 3]; count],
-        attributes: attributes.into_iter().map(attribute).collect(),
-        triangles: Vec::new(),
-        parts: Vec::new(),
-        creases: Default::default(),
-    };
+    let mut vectors = MeshVectors::new(count, &widths);
     let group = source.bricks.group();
-    let targets = targets(&mut mesh, &source.crossings.vertices, group);
+    let targets = vectors.parts(&source.crossings.vertices, group, &widths);
     let total = targets.len();
     MeshStage::Vertices.begin(progress)?;
-    let finish = |batch: &mut VertexBatch, (index, target)| {
+    let finish = |batch: &mut VertexBatch, (index, parts)| {
         let first = index * group;
         let bricks = first..source.bricks.len().min(first + group);
-        let done = finish_group((source, progress), &widths, bricks, target, batch)?;
+        let done = finish_group((source, progress), &widths, bricks, parts, batch)?;
         progress.add(1.0 / total as f64)?;
         Ok::<_, MeshError<F::Error>>(done)
     };
@@ -87,36 +76,78 @@ pub(crate) fn finish<F: Field>(
             work.map_init(VertexBatch::default, |batch, target| watches.hold(|| finish(batch, target)));
         work.try_reduce(Done::default, |a, b| Ok(a.and(b)))
     })?;
+    let attribute =
+        |((name, width), values): (_, FilledVector<f32>)| Attribute { name, width, values: values.finish() };
+    let mesh = Mesh {
+        origin: [0.0; 3],
+        orientation: Orientation::default(),
+        positions: vectors.positions.finish(),
+        normals: vectors.normals.finish(),
+        attributes: attributes.into_iter().zip(vectors.attributes).map(attribute).collect(),
+        triangles: Vec::new(),
+        parts: Vec::new(),
+        creases: Default::default(),
+    };
     Ok((mesh, done))
 }
 
-/// Divides a mesh's vertices among groups of bricks.
-fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<MeshTarget<'a>> {
-    let positions = split(&mut mesh.positions, starts, group, 1);
-    let normals = split(&mut mesh.normals, starts, group, 1);
-    let both = positions.into_iter().zip(normals);
-    let mut targets: Vec<MeshTarget<'a>> =
-        both.map(|(positions, normals)| MeshTarget { positions, normals, attributes: Vec::new() }).collect();
-    for attribute in &mut mesh.attributes {
-        for (target, values) in
-            targets.iter_mut().zip(split(&mut attribute.values, starts, group, attribute.width))
-        {
-            target.attributes.push(values);
+/// The vectors of a mesh that are filled at vertices.
+struct MeshVectors {
+    positions: FilledVector<[f32; 3]>,
+    normals: FilledVector<[f32; 3]>,
+    attributes: Vec<FilledVector<f32>>,
+}
+
+/// The parts of them that some bricks fill.
+struct MeshParts<'a> {
+    positions: VectorPart<'a, [f32; 3]>,
+    normals: VectorPart<'a, [f32; 3]>,
+    attributes: Vec<VectorPart<'a, f32>>,
+}
+
+impl MeshVectors {
+    /// Room for vertices with attributes of these widths.
+    fn new(count: usize, widths: &[usize]) -> Self {
+        let attributes = widths.iter().map(|width| FilledVector::new(width * count)).collect();
+        Self { positions: FilledVector::new(count), normals: FilledVector::new(count), attributes }
+    }
+
+    /// Divides them among groups of bricks.
+    fn parts(&mut self, starts: &[usize], group: usize, widths: &[usize]) -> Vec<MeshParts<'_>> {
+        let positions = self.positions.parts(starts, group, 1).into_iter();
+        let both = positions.zip(self.normals.parts(starts, group, 1));
+        let mut parts: Vec<MeshParts<'_>> = both
+            .map(|(positions, normals)| MeshParts { positions, normals, attributes: Vec::new() })
+            .collect();
+        for (values, &width) in self.attributes.iter_mut().zip(widths) {
+            for (part, values) in parts.iter_mut().zip(values.parts(starts, group, width)) {
+                part.attributes.push(values);
+            }
+        }
+        parts
+    }
+}
+
+impl<'a> MeshParts<'a> {
+    fn open(self) -> MeshTarget<'a> {
+        MeshTarget {
+            positions: self.positions.open(),
+            normals: self.normals.open(),
+            attributes: self.attributes.into_iter().map(VectorPart::open).collect(),
         }
     }
-    targets
 }
 
 fn finish_group<F: Field>(
     (source, progress): (&VertexSource<'_, F>, &Progress<'_>),
     widths: &[usize],
     bricks: Range<usize>,
-    mut target: MeshTarget<'_>,
+    parts: MeshParts<'_>,
     batch: &mut VertexBatch,
 ) -> Result<Done, MeshError<F::Error>> {
     span!("vertices of some bricks");
     let starts = &source.crossings.vertices;
-    let (first, mut done) = (starts[bricks.start], Done::default());
+    let (first, mut done, mut target) = (starts[bricks.start], Done::default(), parts.open());
     for brick in bricks {
         let range = starts[brick] - first..starts[brick + 1] - first;
         if range.is_empty() {

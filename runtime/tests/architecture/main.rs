@@ -81,6 +81,7 @@ fn unsafe_code_has_its_homes() {
         "jit/src/memory.rs",
         "ir/src/environment.rs",
         "ir/src/domain/lanes/level.rs",
+        "runtime/src/mesh/fill.rs",
         "benches/src/limit/vector.rs",
         "cli/src/memory.rs",
     ];

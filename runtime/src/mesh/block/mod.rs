@@ -28,11 +28,9 @@ pub use lattice_block::LatticeBlock;
 
 use std::collections::BTreeMap;
 
-use jbt_ir::limits::MAX_BRICKS;
-
 use super::brick::Bricks;
 use super::crossing::{self, Crossings, UnflippedCells};
-use super::divide::{self, BrickDivision};
+use super::divide::{self, BrickDivision, BrickLimits};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
 use super::fold::{self, SideCorner};
@@ -42,6 +40,7 @@ use super::options::Options;
 use super::report::Sides;
 use super::sample::{self, SampleWindow};
 use super::scope::DivisionScope;
+use super::surface::VertexSet;
 use super::vertex::batch::VertexSource;
 use super::vertex::side::SharpVertex;
 use super::{surface, vertex};
@@ -108,7 +107,7 @@ pub(crate) fn busy<F: Field>(
     let progress = Progress::new(hook, EACH);
     let options = Options { brick: Some(MAX_BRICK), thin_parts: false, ..options.clone() };
     let scope = DivisionScope::Everything;
-    let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
+    let division = divide::divide(field, lattice.axes(), (&options, scope), BrickLimits::PIECES, &progress)?;
     progress.finish()?;
     let mut work: Vec<BlockWork> = Vec::new();
     for place in division.bricks.places {
@@ -134,7 +133,7 @@ pub(crate) fn extract<F: Field>(
     let own = block.cells(lattice, 0);
     let known = block.cells(lattice, reach);
     let scope = DivisionScope::Cells(known);
-    let division = divide::divide(field, lattice.axes(), (&options, scope), MAX_BRICKS, &progress)?;
+    let division = divide::divide(field, lattice.axes(), (&options, scope), BrickLimits::PIECES, &progress)?;
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
     let near = block.cells(lattice, NEAR);
     // As few cells as there can be, unless a chain of flips leads through them; rows may reach farther.
@@ -142,23 +141,30 @@ pub(crate) fn extract<F: Field>(
     let mut found = None;
     for known in tries.iter().map(|&more| block.cells(lattice, more)) {
         let window = Some(SampleWindow::of_cells(known));
-        let samples = sample::sample(field, (&bricks, &regions), window, &progress)?;
-        let looked = crossing::look(&bricks, &samples, options.iso, &progress)?;
+        let samples = sample::sample(field, (&bricks, &regions), (options.iso, window), &progress)?;
+        let (looked, _) = crossing::look(&bricks, &samples, &progress)?;
         if chain::is_complete(&bricks, &looked, near, known) {
-            found = Some(looked);
+            found = Some((samples, looked));
             break;
         }
     }
-    let Some(mut found) = found else { return Err(MeshError::Reach { reach }) };
+    let Some((samples, mut found)) = found else { return Err(MeshError::Reach { reach }) };
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     keep(&bricks, &mut found, near);
     let mut crossings = found.numbered(&bricks, flipped, &progress)?;
     if u32::try_from(crossings.vertex_count()).is_err() {
         return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
     }
-    let source =
-        VertexSource { field, options: &options, bricks: &bricks, regions: &regions, crossings: &crossings };
+    let source = VertexSource {
+        field,
+        options: &options,
+        bricks: &bricks,
+        regions: &regions,
+        samples: &samples,
+        crossings: &crossings,
+    };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
+    drop(samples);
     let go_on = || progress.breathe();
     // Quads with all of their corners.
     let first = near[0].map(|low| if low == 0 { 0 } else { low + 1 });
@@ -166,14 +172,16 @@ pub(crate) fn extract<F: Field>(
     super::go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     leave_quads_out(&bricks, &mut crossings, own);
     let of = (&bricks, &crossings);
-    mesh.triangles = surface::triangles(&bricks, &crossings, &mesh.positions, go_on)?;
-    let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
-    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     let range = bricks_of(&bricks, own);
     let vertices = crossings.vertices[range.start]..crossings.vertices[range.end];
     let doubtful: Vec<u32> =
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
-    surface::repair_normals(&mut mesh, of, &doubtful, &progress)?;
+    let marked = VertexSet::new(mesh.positions.len(), &doubtful);
+    let around;
+    (mesh.triangles, around) = surface::triangles(&bricks, &crossings, (&mesh.positions, &marked), go_on)?;
+    let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
+    let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
+    surface::repair_normals(&mut mesh, &around, &doubtful, &progress)?;
     progress.finish()?;
     let mut cut_sides = crossings.cut;
     cut_sides.add(boxes.cut);
@@ -194,20 +202,12 @@ fn bricks_of(bricks: &Bricks, own: [[usize; 3]; 2]) -> std::ops::Range<usize> {
 /// Leaves out the cells beyond a box.
 fn keep(bricks: &Bricks, found: &mut UnflippedCells, near: [[usize; 3]; 2]) {
     let (mut cells, mut starts) = (Vec::with_capacity(found.cells.len()), vec![0]);
-    let mut kept: Vec<Vec<[f32; 8]>> = found.corners.iter().map(|_| Vec::new()).collect();
-    let mut corners = found.corners.iter().flatten();
     for brick in 0..bricks.len() {
-        let of_group = &mut kept[brick / bricks.group()];
-        for cell in &found.cells[found.starts[brick]..found.starts[brick + 1]] {
-            let values = corners.next().expect("each cell has corners");
-            if is_in(cell_of(bricks, brick, cell), near) {
-                cells.push(*cell);
-                of_group.push(*values);
-            }
-        }
+        let of_brick = &found.cells[found.starts[brick]..found.starts[brick + 1]];
+        cells.extend(of_brick.iter().filter(|cell| is_in(cell_of(bricks, brick, cell), near)));
         starts.push(cells.len());
     }
-    (found.cells, found.starts, found.corners) = (cells, starts, kept);
+    (found.cells, found.starts) = (cells, starts);
     found.suspects.clear();
 }
 

@@ -58,7 +58,6 @@ impl BrickMesh {
     fn gathered(&self, join: &Join) -> JoinedBricks {
         let mut crossings = Crossings {
             cells: Vec::new(),
-            corners: Vec::new(),
             starts: vec![0],
             vertices: vec![0],
             quads: vec![0],
@@ -117,7 +116,8 @@ impl BrickMesh {
         let JoinedBricks { bricks, crossings, names, sharp, homes } = self.gathered(join);
         let positions: Vec<[f32; 3]> =
             names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
-        let Ok(mut triangles) = surface::triangles(&bricks, &crossings, &positions, always);
+        let marked = &surface::VertexSet::NONE;
+        let Ok((mut triangles, _)) = surface::triangles(&bricks, &crossings, (&positions, marked), always);
         let Ok(quads) = fold::sharp_quads((&bricks, &crossings), &sharp, [0; 3], always);
         let Ok(corners) = fold::crease(&quads, &sharp, &positions, &mut triangles, always);
         let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
@@ -155,8 +155,8 @@ impl BrickMesh {
             .filter(|(axes, place)| reached >> axes & 1 == 1 && self.bricks.contains_key(place));
         let above: Vec<BrickPlace> = above.map(|(_, place)| place).collect();
         for (_, place) in self.in_order(above.into_iter()) {
-            judged
-                .add(&self.buffers.triangles[self.bricks[&place].triangles.range()], &self.buffers.positions);
+            let triangles = &self.buffers.triangles[self.bricks[&place].triangles.range()];
+            judged.add(triangles, &self.buffers.positions);
         }
         let mut changed = false;
         for (&(vertex, first), sum) in brick.doubtful.iter().zip(judged.sums()) {

@@ -7,7 +7,7 @@ use super::flips::FlipChain;
 use crate::job::Hook;
 use crate::mesh::brick::Bricks;
 use crate::mesh::crossing::{self, Crossings};
-use crate::mesh::divide::{self, BrickDivision};
+use crate::mesh::divide::{self, BrickDivision, BrickLimits};
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::mesh::indexed::Mesh;
@@ -56,11 +56,10 @@ impl BrickMesh {
         loop {
             let axes = lattice.axes();
             let scope = touched.as_ref().map_or(DivisionScope::Everything, DivisionScope::Touched);
-            let division = divide::divide(field, axes, (&options, scope), MAX_BRICKS, &progress)?;
+            let division = divide::divide(field, axes, (&options, scope), BrickLimits::PIECES, &progress)?;
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
-            let samples = sample::sample(field, (&bricks, &regions), None, &progress)?;
-            let mut found = crossing::look(&bricks, &samples, options.iso, &progress)?;
-            drop(samples);
+            let samples = sample::sample(field, (&bricks, &regions), (options.iso, None), &progress)?;
+            let (mut found, _) = crossing::look(&bricks, &samples, &progress)?;
             let flipped = match &mut touched {
                 None => crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects),
                 Some(touched) => {
@@ -82,6 +81,7 @@ impl BrickMesh {
                 options: &options,
                 bricks: &bricks,
                 regions: &regions,
+                samples: &samples,
                 crossings: &crossings,
             };
             let (mesh, done) = vertex::finish(&source, &progress)?;

@@ -1,10 +1,11 @@
 //! The vertices of one brick, the data that they are made from, and counts of the work.
 
 use super::super::brick::Bricks;
-use super::super::crossing::Crossings;
+use super::super::crossing::{CrossedCell, Crossings};
 use super::super::field::Field;
 use super::super::options::Options;
 use super::super::pull::{LANES, VertexLanes};
+use super::super::sample::{BrickSamples, corners};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
 use super::side::SharpVertex;
@@ -48,6 +49,7 @@ pub(in super::super) struct VertexSource<'a, F: Field> {
     pub(in super::super) options: &'a Options,
     pub(in super::super) bricks: &'a Bricks,
     pub(in super::super) regions: &'a [F::Region],
+    pub(in super::super) samples: &'a BrickSamples,
     pub(in super::super) crossings: &'a Crossings,
 }
 
@@ -70,6 +72,8 @@ pub(super) type VertexPlanes = [Vec<f32>; 3];
 pub(super) struct VertexBatch {
     /// The number of vertices.
     pub(super) count: usize,
+    /// The field at the points of the brick's closed box.
+    pub(super) table: Vec<f32>,
     pub(super) points: VertexPlanes,
     /// For each [`LANES`] of vertices: their cells, and the values derived from these.
     pub(super) seeds: Vec<Seeds>,
@@ -97,6 +101,12 @@ impl VertexBatch {
         self.values.resize(padded, 0.0);
         self.seeds.resize(padded / LANES, Seeds::default());
         self.groups.resize(padded / LANES, SeedGroup::default());
+    }
+
+    /// The field at the corners of a cell of the brick.
+    #[inline(always)]
+    pub(super) fn corners(&self, bricks: &Bricks, cell: &CrossedCell) -> [f32; 8] {
+        corners(&self.table, bricks.at(cell.number).in_table(), bricks.stride())
     }
 
     /// The box in which a vertex stays.

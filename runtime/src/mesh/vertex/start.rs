@@ -1,7 +1,7 @@
 //! The starts of the vertices of a brick: the means of their sheets' crossings.
 
 use super::super::brick::cell_sides;
-use super::super::cell::{default_edges, edges};
+use super::super::cell::{case, default_edges, edges, first_edges};
 use super::super::error::MAX_BRICK;
 use super::super::field::Field;
 use super::super::pull::LANES;
@@ -15,6 +15,8 @@ impl VertexBatch {
         self.shared.clear();
         self.doubtful.clear();
         self.jumped.clear();
+        self.table.resize(source.bricks.table_len(), 0.0);
+        source.samples.gather(source.bricks, brick, &mut self.table);
         self.sow(source, brick);
         let points = self.points.each_mut().map(Vec::as_mut_slice);
         grow(source.options.iso, &self.seeds, &mut self.groups, points);
@@ -32,9 +34,15 @@ impl VertexBatch {
             (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
         let axes = [0, 1, 2].map(|axis| sides(&bricks.axes[axis][origin[axis]..][..extent[axis] + 1]));
         let mut next = 0;
-        for (cell, corners) in crossings.of(brick).iter().zip(crossings.corners_of(bricks, brick)) {
-            let place = bricks.at(cell.number).place();
+        for cell in crossings.of(brick) {
+            let (place, corners) = (bricks.at(cell.number).place(), &self.corners(bricks, cell));
             let home = [0, 1, 2].map(|axis| axes[axis][place[axis] % MAX_BRICK]);
+            // Nearly all cells.
+            if lattice_sides == 0 && cell.flips == 0 && case(cell.signs).sheets == 1 {
+                self.seeds[next / LANES].put(next % LANES, corners, home, first_edges(cell.signs));
+                next += 1;
+                continue;
+            }
             let touched = if lattice_sides == 0 { 0 } else { cell_sides(lattice_sides, extent, place) };
             let flipped;
             let sheets = match cell.flips {

@@ -156,7 +156,7 @@ impl VertexBatch {
         let cells = source.crossings.of(brick);
         // A cell without a vertex has the number of the next vertex.
         let index = cells.partition_point(|cell| cell.vertex as usize <= vertex) - 1;
-        let (cell, corners) = (&cells[index], &source.crossings.corners_of(source.bricks, brick)[index]);
+        let (cell, corners) = (&cells[index], &self.corners(source.bricks, &cells[index]));
         let sheet = vertex as u32 - cell.vertex;
         let start = Start { vertex, bounds: self.bounds(vertex) };
         Sheet::new(source.bricks, brick, (cell, sheet), start, corners, &mut self.crossed)

@@ -91,7 +91,7 @@ impl VertexBatch {
                 continue;
             }
             let start = Start { vertex, bounds: self.bounds(vertex) };
-            let corners = &source.crossings.corners_of(source.bricks, brick)[index];
+            let corners = &self.corners(source.bricks, cell);
             sheets.push(Sheet::new(source.bricks, brick, (cell, 0), start, corners, &mut self.crossed));
         }
         sheets

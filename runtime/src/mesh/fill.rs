@@ -1,0 +1,105 @@
+//! Vectors that threads fill side by side.
+//!
+//! A vector of zeros that one thread makes is written twice, and the first time by the wrong thread: the
+//! system finds its pages one after the other, and each line of memory goes from one processor to another.
+//! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it.
+
+use std::collections::TryReserveError;
+use std::mem::MaybeUninit;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::brick::split;
+
+/// A vector of known length, to be filled in parts.
+pub(super) struct FilledVector<T> {
+    /// Room for the values, none of which is there yet.
+    values: Vec<T>,
+    length: usize,
+    /// The number of places in parts that have been opened.
+    opened: AtomicUsize,
+}
+
+/// Places of a vector that no other part has.
+pub(super) struct VectorPart<'a, T> {
+    room: &'a mut [MaybeUninit<T>],
+    opened: &'a AtomicUsize,
+}
+
+impl<T: Copy + Default> FilledVector<T> {
+    /// Room for this many values. Without so much memory it does what vectors do.
+    pub(super) fn new(length: usize) -> Self {
+        Self { values: Vec::with_capacity(length), length, opened: AtomicUsize::new(0) }
+    }
+
+    /// The same, or an error if there is not so much memory.
+    pub(super) fn try_new(length: usize) -> Result<Self, TryReserveError> {
+        let mut values = Vec::new();
+        values.try_reserve_exact(length)?;
+        Ok(Self { values, length, opened: AtomicUsize::new(0) })
+    }
+
+    /// Divides the vector among groups of bricks: the places of brick `b` are from `starts[b]` to
+    /// `starts[b + 1]`, times `width`.
+    pub(super) fn parts(&mut self, starts: &[usize], group: usize, width: usize) -> Vec<VectorPart<'_, T>> {
+        // What earlier parts have counted does not count.
+        self.opened = AtomicUsize::new(0);
+        let room = &mut self.values.spare_capacity_mut()[..self.length];
+        let rooms = split(room, starts, group, width).into_iter();
+        rooms.map(|room| VectorPart { room, opened: &self.opened }).collect()
+    }
+
+    /// The vector.
+    ///
+    /// # Panics
+    /// Unless its parts were all of it, and each was opened.
+    pub(super) fn finish(self) -> Vec<T> {
+        let Self { mut values, length, opened } = self;
+        assert_eq!(opened.into_inner(), length, "each part is opened");
+        // SAFETY: there is room for `length` values. The parts of the last division share no place, each
+        // counts its places once, when they are values, and they counted all.
+        unsafe { values.set_len(length) };
+        values
+    }
+}
+
+impl<'a, T: Copy + Default> VectorPart<'a, T> {
+    /// The places of the part, as zeros.
+    pub(super) fn open(self) -> &'a mut [T] {
+        for place in &mut *self.room {
+            place.write(T::default());
+        }
+        self.opened.fetch_add(self.room.len(), Ordering::Relaxed);
+        // SAFETY: each of them has just been written.
+        unsafe { self.room.assume_init_mut() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FilledVector;
+
+    #[test]
+    fn parts_make_the_whole() {
+        let mut vector = FilledVector::<u32>::new(12);
+        for (part, number) in vector.parts(&[0, 1, 1, 4], 2, 3).into_iter().zip(1..) {
+            let places = part.open();
+            assert!(places.iter().all(|place| *place == 0));
+            places.fill(number);
+        }
+        assert_eq!(vector.finish(), [1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2]);
+        assert!(FilledVector::<u32>::new(0).finish().is_empty());
+        assert!(FilledVector::<u32>::try_new(usize::MAX).is_err());
+    }
+
+    #[test]
+    #[should_panic(expected = "each part is opened")]
+    fn a_part_that_was_not_opened_is_noticed() {
+        let mut vector = FilledVector::<u8>::new(4);
+        for division in 0..2 {
+            let mut parts = vector.parts(&[0, 2, 4], 1, 1).into_iter();
+            // Once the first part, once the second: four places in all.
+            parts.nth(division).map(super::VectorPart::open);
+        }
+        vector.finish();
+    }
+}
