@@ -113,7 +113,7 @@ pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
 pub const MAX_STACK_FRAME_BYTES: usize = 16 << 10;
 /// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
-/// Bricks of one mesh: the field is kept at all points of each, 4 bytes a point.
+/// Bricks of one mesh: the field is kept at all points of each, 5 bytes a point.
 pub const MAX_BRICKS: usize = 1 << 22;
 /// Cells along one axis of a lattice.
 pub const MAX_RESOLUTION: usize = 1 << 20;

@@ -442,10 +442,10 @@ fn count_compares_with_separate_walks() {
 fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let ball = "jbt 1 let ball = point { radius 0.95 } union { use ball color (1 0 0) { use ball } }";
     let folder = folder().with("ball.jbt", ball);
-    let lattice = ["--cell", "0.25", "--region", "-1,-1,-1,1,1,2"];
+    let lattice = ["--cell", "0.25", "--region", "-1,-1,-1,1,1,7"];
     let report = folder.jbt(&[&["count", "ball.jbt", "--json"][..], &lattice].concat()).code(0).json();
     let axis = |last: i32| (-4..=last).map(|index| f64::from(index) / 4.0);
-    let all = axis(4).flat_map(|x| axis(4).flat_map(move |y| axis(8).map(move |z| x * x + y * y + z * z)));
+    let all = axis(4).flat_map(|x| axis(4).flat_map(move |y| axis(28).map(move |z| x * x + y * y + z * z)));
     let inside = all.clone().filter(|square| *square < 0.95 * 0.95).count() as u64;
     let points = all.count() as u64;
     assert_eq!((&report["points"], &report["pairs_in_support"]), (&points.into(), &inside.into()));
@@ -458,7 +458,7 @@ fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let avoided = of(&mesh["avoided_by_support"]) + of(&mesh["avoided_by_interval"]);
     assert_eq!(of(&stages["lattice"]["evaluations"]) + avoided, points, "done or avoided");
     assert_eq!(report["waste"].as_f64(), Some(points as f64 / inside as f64));
-    assert_eq!(report["lattice"]["cells"], serde_json::json!([8, 8, 12]));
+    assert_eq!(report["lattice"]["cells"], serde_json::json!([8, 8, 32]));
     assert_eq!(report["leaves"][0]["pairs_in_support"].as_u64(), Some(inside));
     let all = &report["queries"][3];
     let counts = ["walks", "separate", "cached", "fused"].map(|key| all[key].as_u64().unwrap());

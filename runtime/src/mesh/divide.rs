@@ -97,16 +97,17 @@ impl BrickLimits {
     pub(crate) const PIECES: Self = Self { count: MAX_BRICKS, edge: 8 };
 }
 
-/// For bricks of an edge, the mean ops of a point from which on they are halved: fewer ops at each point for
-/// more bricks.
-const COSTLY: [(usize, u64); 2] = [(16, 256), (8, 200)];
+/// For bricks of an edge: the mean ops of a point, and the number of bricks, from which on they are halved.
+/// Then there are fewer ops at each point, or fewer points to keep: 8,192 bricks of 16^3 keep 170 MB.
+const HALVED: [(usize, u64, usize); 2] = [(16, 256, 1 << 13), (8, 200, usize::MAX)];
 
 impl<R> BoxLevel<R> {
-    /// Whether a point is costly, on average, for bricks of this edge.
-    fn is_costly<F: Field<Region = R>>(&self, field: &F, edge: usize) -> bool {
-        let Some((_, limit)) = COSTLY.iter().find(|(of, _)| *of == edge) else { return false };
+    /// Whether bricks of this edge are to be halved: they are many, or a point is costly, on average.
+    fn wants_halves<F: Field<Region = R>>(&self, field: &F, edge: usize) -> bool {
+        let Some((_, most_ops, many)) = HALVED.iter().find(|(of, ..)| *of == edge) else { return false };
         let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
-        ops >= limit.saturating_mul(self.regions.len() as u64) && ops > 0
+        let bricks = self.regions.len();
+        bricks >= *many || ops >= most_ops.saturating_mul(bricks as u64) && ops > 0
     }
 }
 
@@ -158,7 +159,7 @@ pub(crate) fn divide<F: Field>(
         (level, chunks) = divider.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
         progress.add(1.0 / f64::from(halvings))?;
     }
-    while options.brick.is_none() && level.is_costly(field, edge) {
+    while options.brick.is_none() && level.wants_halves(field, edge) {
         (level, chunks) = divider.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
         edge /= 2;
     }

@@ -61,7 +61,7 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there may be.
         limit: usize,
     },
-    /// The memory for the field at the points of the bricks (4 bytes a point) is not to be had.
+    /// The memory for the field at the points of the bricks (5 bytes a point) is not to be had.
     #[error("there is no memory for the field at {points} lattice points")]
     Memory {
         /// How many points there are.

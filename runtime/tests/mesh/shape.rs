@@ -371,19 +371,19 @@ impl Field for Failing {
 
 #[test]
 fn an_error_of_the_field_is_handed_on() {
-    let lattice = lattice(1.0, 0.125);
+    let (lattice, options) = (lattice(1.0, 0.125), Options { brick: Some(8), ..Options::default() });
     let field = Failing(AtomicU64::new(u64::MAX));
-    assert!(extract(&field, &lattice, &Options::default()).run().is_ok());
+    assert!(extract(&field, &lattice, &options).run().is_ok());
     // Two levels of boxes: the region, its range, those of its children, their regions. Then eight bricks:
     // the lattice, two pulls and the rest of each, all of them in one portion or in several.
     let needed = u64::MAX - field.0.into_inner();
     assert!(needed >= 4 + 8 * (1 + 2 + 1), "{needed}");
     for calls in 0..needed {
         let field = Failing(AtomicU64::new(calls));
-        let result = extract(&field, &lattice, &Options::default()).run();
+        let result = extract(&field, &lattice, &options).run();
         assert_eq!(result.map(|_| ()), Err(MeshError::Field(NoMore)), "after {calls}");
     }
-    assert!(extract(&Failing(AtomicU64::new(needed)), &lattice, &Options::default()).run().is_ok());
+    assert!(extract(&Failing(AtomicU64::new(needed)), &lattice, &options).run().is_ok());
 }
 
 /// The sphere with one attribute, of any width.
