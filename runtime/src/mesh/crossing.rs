@@ -10,7 +10,7 @@ use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
-use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
+use super::brick::{Bricks, NONE, cell_sides, direction, number, place, starts};
 use super::cell::{CellCase, SheetEdges, case, default_edges, edges, sheets};
 use super::report::Sides;
 use super::sample::BrickSamples;
@@ -69,18 +69,9 @@ pub(crate) fn find(
     samples: &BrickSamples,
     progress: &Progress<'_>,
 ) -> Result<Crossings, Cancelled> {
-    let (mut found, mut counts) = look(bricks, samples, progress)?;
+    let mut found = look(bricks, samples, progress)?;
     let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
-    if flipped_faces > 0 {
-        for (brick, counts) in counts.iter_mut().enumerate() {
-            progress.breathe()?;
-            let cells = &mut found.cells[found.starts[brick]..found.starts[brick + 1]];
-            if cells.iter().any(|cell| cell.flips != 0) {
-                *counts = number_brick(bricks, brick, cells);
-            }
-        }
-    }
-    Ok(found.counted(counts, flipped_faces))
+    found.numbered(bricks, flipped_faces, progress)
 }
 
 /// The crossing cells of all bricks, before faces are flipped.
@@ -90,39 +81,54 @@ pub(crate) struct UnflippedCells {
     pub(crate) starts: Vec<usize>,
     /// Cells with a low face that is pinched by default: the brick and the cell, ascending.
     pub(crate) suspects: Vec<(usize, usize)>,
+    /// What each brick has, as if no face were to be flipped.
+    counts: Vec<BrickCounts>,
     cut: Sides,
 }
 
 impl UnflippedCells {
-    /// Numbers the vertices anew, once faces are flipped or cells are left out.
+    /// The crossings, once faces are flipped: bricks with a flip are numbered anew.
     pub(crate) fn numbered(
-        mut self,
+        self,
         bricks: &Bricks,
         flipped_faces: u64,
         progress: &Progress<'_>,
     ) -> Result<Crossings, Cancelled> {
         span!("number");
-        let counts = number_vertices(bricks, &self.starts, &mut self.cells, progress)?;
-        Ok(self.counted(counts, flipped_faces))
-    }
-
-    /// The crossings, from what each brick has.
-    fn counted(self, counts: Vec<BrickCounts>, flipped_faces: u64) -> Crossings {
-        let Self { cells, starts, suspects: _, cut } = self;
+        let Self { mut cells, mut counts, starts, suspects: _, cut } = self;
+        for (brick, counts) in counts.iter_mut().enumerate() {
+            progress.breathe()?;
+            let cells = &mut cells[starts[brick]..starts[brick + 1]];
+            if cells.iter().any(|cell| cell.flips != 0) {
+                *counts = number_brick(bricks, brick, cells);
+            }
+        }
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
         let quads = self::starts(counts.iter().map(|count| count.quads));
         let is_open = counts.iter().any(|count| count.is_open);
-        Crossings { cells, starts, vertices, quads, flipped_faces, cut, is_open }
+        Ok(Crossings { cells, starts, vertices, quads, flipped_faces, cut, is_open })
+    }
+
+    /// Leaves out cells that are not to be kept, by their bricks.
+    pub(crate) fn keep(&mut self, bricks: &Bricks, is_kept: impl Fn(usize, &CrossedCell) -> bool) {
+        let (mut cells, mut starts) = (Vec::with_capacity(self.cells.len()), vec![0]);
+        for brick in 0..bricks.len() {
+            let of_brick = &self.cells[self.starts[brick]..self.starts[brick + 1]];
+            cells.extend(of_brick.iter().filter(|cell| is_kept(brick, cell)));
+            self.counts[brick] = number_brick(bricks, brick, &mut cells[starts[brick]..]);
+            starts.push(cells.len());
+        }
+        (self.cells, self.starts) = (cells, starts);
+        self.suspects.clear();
     }
 }
 
-/// Finds the crossing cells, with vertices numbered as if no face were to be flipped, and what each brick has
-/// then.
+/// Finds the crossing cells.
 pub(crate) fn look(
     bricks: &Bricks,
     samples: &BrickSamples,
     progress: &Progress<'_>,
-) -> Result<(UnflippedCells, Vec<BrickCounts>), Cancelled> {
+) -> Result<UnflippedCells, Cancelled> {
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
@@ -153,7 +159,7 @@ pub(crate) fn look(
         cut.add(found.cut);
     }
     let starts = starts(cell_counts.into_iter());
-    Ok((UnflippedCells { cells, starts, suspects, cut }, counts))
+    Ok(UnflippedCells { cells, counts, starts, suspects, cut })
 }
 
 /// The crossing cells of some bricks.
@@ -363,36 +369,11 @@ pub(crate) fn below(
 
 /// What a brick has.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct BrickCounts {
+struct BrickCounts {
     vertices: u32,
     quads: usize,
     /// Whether the mesh has a rim here.
     is_open: bool,
-}
-
-/// Numbers the vertices of each brick in the order of its cells. Returns what each brick has.
-fn number_vertices<'a>(
-    bricks: &Bricks,
-    starts_of_cells: &[usize],
-    cells: &'a mut [CrossedCell],
-    progress: &Progress<'_>,
-) -> Result<Vec<BrickCounts>, Cancelled> {
-    let group = bricks.group();
-    let groups = split(cells, starts_of_cells, group, 1);
-    let of_group = |(index, mut cells): (usize, &'a mut [CrossedCell])| {
-        progress.breathe()?;
-        let first = index * group;
-        let counts = (first..bricks.len().min(first + group)).map(|brick| {
-            let count = starts_of_cells[brick + 1] - starts_of_cells[brick];
-            let (mine, rest) = std::mem::take(&mut cells).split_at_mut(count);
-            cells = rest;
-            number_brick(bricks, brick, mine)
-        });
-        Ok(counts.collect())
-    };
-    let counts: Result<Vec<Vec<BrickCounts>>, Cancelled> =
-        scatter(|_| groups.into_par_iter().enumerate().map(of_group).collect());
-    Ok(counts?.concat())
 }
 
 /// Numbers the vertices of a brick, and counts them and the quads.

@@ -29,7 +29,7 @@ pub use lattice_block::LatticeBlock;
 use std::collections::BTreeMap;
 
 use super::brick::Bricks;
-use super::crossing::{self, Crossings, UnflippedCells};
+use super::crossing::{self, Crossings};
 use super::divide::{self, BrickDivision, BrickLimits};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
@@ -142,7 +142,7 @@ pub(crate) fn extract<F: Field>(
     for known in tries.iter().map(|&more| block.cells(lattice, more)) {
         let window = Some(SampleWindow::of_cells(known));
         let samples = sample::sample(field, (&bricks, &regions), (options.iso, window), &progress)?;
-        let (looked, _) = crossing::look(&bricks, &samples, &progress)?;
+        let looked = crossing::look(&bricks, &samples, &progress)?;
         if chain::is_complete(&bricks, &looked, near, known) {
             found = Some((samples, looked));
             break;
@@ -150,7 +150,7 @@ pub(crate) fn extract<F: Field>(
     }
     let Some((samples, mut found)) = found else { return Err(MeshError::Reach { reach }) };
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
-    keep(&bricks, &mut found, near);
+    found.keep(&bricks, |brick, cell| is_in(cell_of(&bricks, brick, cell), near));
     let mut crossings = found.numbered(&bricks, flipped, &progress)?;
     if u32::try_from(crossings.vertex_count()).is_err() {
         return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
@@ -197,18 +197,6 @@ fn bricks_of(bricks: &Bricks, own: [[usize; 3]; 2]) -> std::ops::Range<usize> {
     let mut mine = (0..bricks.len()).filter(|&brick| is_in(bricks.origin(brick), own));
     let Some(first) = mine.next() else { return 0..0 };
     first..first + 1 + mine.count()
-}
-
-/// Leaves out the cells beyond a box.
-fn keep(bricks: &Bricks, found: &mut UnflippedCells, near: [[usize; 3]; 2]) {
-    let (mut cells, mut starts) = (Vec::with_capacity(found.cells.len()), vec![0]);
-    for brick in 0..bricks.len() {
-        let of_brick = &found.cells[found.starts[brick]..found.starts[brick + 1]];
-        cells.extend(of_brick.iter().filter(|cell| is_in(cell_of(bricks, brick, cell), near)));
-        starts.push(cells.len());
-    }
-    (found.cells, found.starts) = (cells, starts);
-    found.suspects.clear();
 }
 
 /// Leaves out the quads of bricks below a block, of which some corners are not there.

@@ -59,7 +59,7 @@ impl BrickMesh {
             let division = divide::divide(field, axes, (&options, scope), BrickLimits::PIECES, &progress)?;
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
             let samples = sample::sample(field, (&bricks, &regions), (options.iso, None), &progress)?;
-            let (mut found, _) = crossing::look(&bricks, &samples, &progress)?;
+            let mut found = crossing::look(&bricks, &samples, &progress)?;
             let flipped = match &mut touched {
                 None => crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects),
                 Some(touched) => {
