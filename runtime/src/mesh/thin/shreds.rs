@@ -90,6 +90,10 @@ impl<F: Field> Looked<'_, F> {
             return Ok(None);
         }
         let vertices: Vec<usize> = self.crossed.cells(block).flat_map(|cell| self.vertices(cell)).collect();
+        // Cells that a side of the lattice cuts may have no vertex.
+        if vertices.is_empty() {
+            return Ok(None);
+        }
         let some: Vec<usize> =
             vertices.iter().copied().step_by(vertices.len().div_ceil(ASKED_FIRST)).collect();
         if CALLED_FIRST * self.votes(&some)? < some.len() {
