@@ -1,18 +1,22 @@
 //! Random models by their seeds, through a target: `models TARGET FIRST COUNT [RECORD]`.
 //!
-//! With a record it goes on behind the last seed that the record has. A model that does not hold ends it, and
-//! its seed is said: `models TARGET SEED 1` runs it again.
+//! With a record, a CSV file, it goes on behind the last seed that the record has. A model that does not hold ends it, and
+//! its seed is said: `models TARGET SEED 1` runs it again. Most models are of few nodes: errors of engines show in
+//! small models, and many of those take the time of a large one.
 
 #![allow(clippy::print_stdout, reason = "it says what it has done")]
 
-use std::fs::OpenOptions;
-use std::io::Write as _;
+use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::Command;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Seeds of one line of a record.
 const CHUNK: u64 = 500;
+/// The byte that says how many nodes a model has, less than this many.
+const SIZE: usize = 16;
+const MAX_SIZE: u8 = 24;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -22,12 +26,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => return Err("usage: models TARGET FIRST COUNT [RECORD]".into()),
     };
     let end = first + count;
-    let done = record.and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
-    // A line: target, first seed, seed behind the last one, seconds.
-    let mut from: u64 = first;
-    for line in done.lines().filter(|line| line.starts_with(&format!("{name},"))) {
-        from = from.max(line.split(',').nth(2).ok_or("the record has a bad line")?.parse()?);
-    }
+    let mut done = record.map_or_else(|| Ok(Vec::new()), |path| read(path))?;
+    let mut from = done.iter().filter(|row| row.target == *name).map(|row| row.end).fold(first, u64::max);
+    let commit = commit();
     while from < end {
         let to = end.min(from + CHUNK);
         let begin = Instant::now();
@@ -35,12 +36,73 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let took = begin.elapsed();
         println!("{name}: seeds {from} to {to} hold, {took:.0?}");
         if let Some(path) = record {
-            let mut file = OpenOptions::new().create(true).append(true).open(path)?;
-            writeln!(file, "{name},{from},{to},{:.1}", took.as_secs_f64())?;
+            add(
+                &mut done,
+                Stretch {
+                    target: name.clone(),
+                    first: from,
+                    end: to,
+                    seconds: took.as_secs_f64(),
+                    commit: commit.clone(),
+                },
+            );
+            write(path, &done)?;
         }
         from = to;
     }
     Ok(())
+}
+
+/// Seeds that hold: from the first one to the one behind the last.
+struct Stretch {
+    target: String,
+    first: u64,
+    end: u64,
+    seconds: f64,
+    commit: String,
+}
+
+const COLUMNS: &str = "target,first,end,seconds,commit";
+
+/// The rows of a record; none if there is no such file.
+fn read(path: &str) -> Result<Vec<Stretch>, Box<dyn std::error::Error>> {
+    let Ok(text) = fs::read_to_string(path) else { return Ok(Vec::new()) };
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [target, first, end, seconds, commit] = cells[..] else {
+            return Err(format!("{path}: this is no row: {line}").into());
+        };
+        let (target, commit) = (target.to_owned(), commit.to_owned());
+        Ok(Stretch { target, first: first.parse()?, end: end.parse()?, seconds: seconds.parse()?, commit })
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// Writes the rows, in place of the file.
+fn write(path: &str, rows: &[Stretch]) -> std::io::Result<()> {
+    let mut text = format!("{COLUMNS}\n");
+    for Stretch { target, first, end, seconds, commit } in rows {
+        text += &format!("{target},{first},{end},{seconds:.1},{commit}\n");
+    }
+    let new = format!("{path}.new");
+    fs::write(&new, text)?;
+    fs::rename(&new, path)
+}
+
+/// A row more, or a longer one.
+fn add(rows: &mut Vec<Stretch>, next: Stretch) {
+    let goes_on =
+        |row: &&mut Stretch| row.target == next.target && row.commit == next.commit && row.end == next.first;
+    match rows.iter_mut().find(goes_on) {
+        Some(row) => (row.end, row.seconds) = (next.end, row.seconds + next.seconds),
+        None => rows.push(next),
+    }
+}
+
+/// The commit of the folder that this is run in.
+fn commit() -> String {
+    let said = Command::new("git").args(["rev-parse", "--short", "HEAD"]).output();
+    said.map_or_else(|_| "-".into(), |said| String::from_utf8_lossy(&said.stdout).trim().to_owned())
 }
 
 /// The seeds on all threads.
@@ -56,7 +118,8 @@ fn chunk(name: &str, from: u64, to: u64) -> Result<(), String> {
                         break;
                     }
                     let mut rng = fastrand::Rng::with_seed(seed);
-                    let bytes: Vec<u8> = (0..18).map(|_| rng.u8(..)).collect();
+                    let mut bytes: Vec<u8> = (0..18).map(|_| rng.u8(..)).collect();
+                    bytes[SIZE] = (0..3).map(|_| rng.u8(0..MAX_SIZE)).min().unwrap_or(0);
                     if catch_unwind(AssertUnwindSafe(|| target.run(&bytes))).is_err() {
                         failed.fetch_min(seed, Ordering::Relaxed);
                     }
