@@ -1,7 +1,7 @@
 //! Every engine at every level of this CPU gives the bits of the scalar reference, for any query.
 //!
-//! Most of an input's time is its compilation, once for each engine and level. So one input in eight goes to all
-//! levels, the others to one of each engine: as much time finds more.
+//! Most of an input's time is its compilation, once for each engine and level. So one input in eight goes to
+//! all levels, the others to one of each engine: as much time finds more.
 
 use jbt::text::print;
 use jbt::{

@@ -1,8 +1,8 @@
 //! Random models by their seeds, through a target: `models TARGET FIRST COUNT [RECORD]`.
 //!
 //! With a record, a CSV file, it goes on behind the last seed that the record has. A model that does not hold ends it, and
-//! its seed is said: `models TARGET SEED 1` runs it again. Most models are of few nodes: errors of engines show in
-//! small models, and many of those take the time of a large one.
+//! its seed is said: `models TARGET SEED 1` runs it again. Most models are of few nodes: errors of engines
+//! show in small models, and many of those take the time of a large one.
 
 #![allow(clippy::print_stdout, reason = "it says what it has done")]
 
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if let Some(path) = record {
             add(
                 &mut done,
-                Stretch {
+                SeedRange {
                     target: name.clone(),
                     first: from,
                     end: to,
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Seeds that hold: from the first one to the one behind the last.
-struct Stretch {
+struct SeedRange {
     target: String,
     first: u64,
     end: u64,
@@ -65,7 +65,7 @@ struct Stretch {
 const COLUMNS: &str = "target,first,end,seconds,commit";
 
 /// The rows of a record; none if there is no such file.
-fn read(path: &str) -> Result<Vec<Stretch>, Box<dyn std::error::Error>> {
+fn read(path: &str) -> Result<Vec<SeedRange>, Box<dyn std::error::Error>> {
     let Ok(text) = fs::read_to_string(path) else { return Ok(Vec::new()) };
     let row = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
@@ -73,15 +73,15 @@ fn read(path: &str) -> Result<Vec<Stretch>, Box<dyn std::error::Error>> {
             return Err(format!("{path}: this is no row: {line}").into());
         };
         let (target, commit) = (target.to_owned(), commit.to_owned());
-        Ok(Stretch { target, first: first.parse()?, end: end.parse()?, seconds: seconds.parse()?, commit })
+        Ok(SeedRange { target, first: first.parse()?, end: end.parse()?, seconds: seconds.parse()?, commit })
     };
     text.lines().skip(1).map(row).collect()
 }
 
 /// Writes the rows, in place of the file.
-fn write(path: &str, rows: &[Stretch]) -> std::io::Result<()> {
+fn write(path: &str, rows: &[SeedRange]) -> std::io::Result<()> {
     let mut text = format!("{COLUMNS}\n");
-    for Stretch { target, first, end, seconds, commit } in rows {
+    for SeedRange { target, first, end, seconds, commit } in rows {
         text += &format!("{target},{first},{end},{seconds:.1},{commit}\n");
     }
     let new = format!("{path}.new");
@@ -90,9 +90,10 @@ fn write(path: &str, rows: &[Stretch]) -> std::io::Result<()> {
 }
 
 /// A row more, or a longer one.
-fn add(rows: &mut Vec<Stretch>, next: Stretch) {
-    let goes_on =
-        |row: &&mut Stretch| row.target == next.target && row.commit == next.commit && row.end == next.first;
+fn add(rows: &mut Vec<SeedRange>, next: SeedRange) {
+    let goes_on = |row: &&mut SeedRange| {
+        row.target == next.target && row.commit == next.commit && row.end == next.first
+    };
     match rows.iter_mut().find(goes_on) {
         Some(row) => (row.end, row.seconds) = (next.end, row.seconds + next.seconds),
         None => rows.push(next),
