@@ -1,8 +1,8 @@
 //! Random models by their seeds, through a target: `models TARGET FIRST COUNT [RECORD]`.
 //!
-//! With a record, a CSV file, it goes on behind the last seed that the record has. A model that does not hold ends it, and
-//! its seed is said: `models TARGET SEED 1` runs it again. Most models are of few nodes: errors of engines
-//! show in small models, and many of those take the time of a large one.
+//! With a record, a CSV file, it goes on behind the last seed that the record has. A model that does not hold
+//! ends it, and its seed is said: `models TARGET SEED 1` runs it again. Most models are of few nodes: errors
+//! of engines show in small models, and many of those take the time of a large one.
 
 #![allow(clippy::print_stdout, reason = "it says what it has done")]
 
