@@ -382,24 +382,24 @@ fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> Bri
     let mut counts = BrickCounts::default();
     for cell in cells {
         cell.vertex = counts.vertices;
-        if sides == 0 && cell.flips == 0 {
+        let touched = if sides == 0 { 0 } else { cell_sides(sides, extent, bricks.at(cell.number).place()) };
+        if touched == 0 && cell.flips == 0 {
             let CellCase { sheets, quads, .. } = case(cell.signs);
             counts.vertices += u32::from(sheets);
             counts.quads += usize::from(quads);
             continue;
         }
         let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);
-        let sides = cell_sides(sides, extent, bricks.at(cell.number).place());
         let mut count = |sheets: &[SheetEdges]| {
-            counts.vertices += sheets.iter().filter(|sheet| sheet.have_quad(sides)).count() as u32;
-            counts.is_open |= sheets.iter().any(|sheet| sheet.have_rim(sides));
+            counts.vertices += sheets.iter().filter(|sheet| sheet.have_quad(touched)).count() as u32;
+            counts.is_open |= sheets.iter().any(|sheet| sheet.have_rim(touched));
         };
         if cell.flips == 0 {
             count(default_edges(cell.signs));
         } else {
             count(&edges(cell.signs, cell.flips));
         }
-        let [x, y, z] = [0, 2, 4].map(|side| usize::from(sides >> side & 1 == 0));
+        let [x, y, z] = [0, 2, 4].map(|side| usize::from(touched >> side & 1 == 0));
         counts.quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
     }
     counts

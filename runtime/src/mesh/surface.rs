@@ -45,7 +45,8 @@ pub(crate) fn triangles<E: Send>(
     };
     let found: Result<Vec<Vec<usize>>, E> =
         scatter(|_| groups.into_par_iter().enumerate().map_init(|| Around::new(bricks), fill).collect());
-    Ok((triangles.finish(), found?.concat()))
+    let found = found?.concat();
+    Ok((triangles.finish(), found))
 }
 
 /// A set of vertices that is asked at each quad: a bit for each vertex, if any is in it.

@@ -4,6 +4,7 @@
 use std::convert::Infallible;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use jbt::boxes::Divisible;
 use jbt::limits::MAX_ATTRIBUTE_WIDTH;
@@ -293,6 +294,38 @@ fn progress_ascends_and_cancels() {
         assert!(seen[seen.len() - 1] >= stop);
         assert_eq!(seen.iter().filter(|&&fraction| fraction >= stop).count(), 1);
     }
+}
+
+#[test]
+fn whoever_cancels_has_no_mesh_and_no_panic() {
+    let field = Closed(cubic(1.0));
+    let run = |wait: Option<Duration>| {
+        let token = CancelToken::new();
+        let begin = Instant::now();
+        let result = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                wait.map(|wait| {
+                    std::thread::sleep(wait);
+                    token.cancel();
+                })
+            });
+            extract(&field, &lattice(1.0, 0.008), &Options::default()).cancel(&token).run()
+        });
+        (result.map(|_| ()), begin.elapsed())
+    };
+    let (result, whole) = run(None);
+    assert_eq!(result, Ok(()));
+    let mut cancelled = 0;
+    for part in 0..60 {
+        match run(Some(whole * part / 60)).0 {
+            Ok(()) => {}
+            Err(error) => {
+                assert_eq!(error, MeshError::Cancelled);
+                cancelled += 1;
+            }
+        }
+    }
+    assert!(cancelled > 0);
 }
 
 /// Fails from the given call on.
