@@ -371,7 +371,7 @@ impl Evaluator {
     /// How many distances to skeletons one point takes.
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
-        of_selection(&self.program.bound.kernel.per_row, self.program.bound.all())
+        self.program.evaluations
     }
 
     /// How many distances to skeletons one point of a region takes.

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use jbt_ir::domain::counting::of_selection;
 use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
 
@@ -22,6 +23,8 @@ pub(crate) struct AnswerProgram {
     pub(crate) layout: Layout,
     /// Distances that separate walks compute at a point.
     pub(crate) separate: u64,
+    /// Distances that it computes at a point with all of its rows.
+    pub(crate) evaluations: u64,
     /// The same program row by row, if this one is straight code: made for the first region.
     pub(crate) for_regions: OnceLock<Arc<AnswerProgram>>,
 }
@@ -41,7 +44,8 @@ impl AnswerProgram {
             "planes are named alike everywhere"
         );
         let separate = walks(query).saturating_mul(uses);
-        Self { query, bound, layout, separate, for_regions: OnceLock::new() }
+        let evaluations = of_selection(&bound.kernel.per_row, bound.all());
+        Self { query, bound, layout, separate, evaluations, for_regions: OnceLock::new() }
     }
 
     /// Whether it is straight code, which knows no rows of regions.

@@ -57,6 +57,9 @@ pub(crate) struct Bricks {
     pub(crate) neighbours: Vec<[u32; 27]>,
     /// The place of each cell of a brick, in Morton order.
     cells: Vec<At>,
+    /// The sides of the lattice that each brick touches: bit `2 axis` for the low one, `2 axis + 1` for the
+    /// high one.
+    sides: Vec<u8>,
 }
 
 /// Where a cell is in its brick.
@@ -68,6 +71,8 @@ pub(crate) struct At {
     place: [u8; 3],
     /// The axes along which it is the first, a bit each.
     lows: u8,
+    /// The sides of a whole brick that it touches, as in [`Bricks::sides`].
+    sides: u8,
 }
 
 impl At {
@@ -103,10 +108,19 @@ impl Bricks {
             let [x, y, z] = place(number as u16);
             let table = (x + stride * (y + stride * z)) as u16;
             let lows = u8::from(x == 0) | u8::from(y == 0) << 1 | u8::from(z == 0) << 2;
-            At { table, place: [x, y, z].map(|index| index as u8), lows }
+            let sides = touched([x, y, z], [edge; 3]);
+            At { table, place: [x, y, z].map(|index| index as u8), lows, sides }
         };
         let cells = (0..edge.pow(3)).map(at).collect();
-        Self { edge, axes, places, neighbours, cells }
+        let ends = axes.each_ref().map(|axis| axis.len() - 1);
+        let sides_of = |place: &[u32; 3]| {
+            (0..3).fold(0, |sides, axis| {
+                let is_last = (place[axis] as usize + 1) * edge >= ends[axis];
+                sides | u8::from(place[axis] == 0) << (2 * axis) | u8::from(is_last) << (2 * axis + 1)
+            })
+        };
+        let sides = places.iter().map(sides_of).collect();
+        Self { edge, axes, places, neighbours, cells, sides }
     }
 
     /// The number of bricks.
@@ -153,22 +167,45 @@ impl Bricks {
 
     /// The sides of the lattice that a brick touches: bit `2 axis` for the low one, `2 axis + 1` for the high
     /// one.
+    #[inline(always)]
     pub(crate) fn sides(&self, brick: usize) -> u8 {
-        let (origin, extent) = (self.origin(brick), self.extent(brick));
-        (0..3).fold(0, |sides, axis| {
-            let ends = origin[axis] + extent[axis] + 1 == self.axes[axis].len();
-            sides | u8::from(origin[axis] == 0) << (2 * axis) | u8::from(ends) << (2 * axis + 1)
-        })
+        self.sides[brick]
     }
 }
 
-/// The sides of the lattice that a cell touches, in a brick with these sides.
-pub(crate) fn cell_sides(sides: u8, extent: [usize; 3], place: [usize; 3]) -> u8 {
-    let touches = (0..3).fold(0, |mask, axis| {
+/// The sides of a box of this extent that a cell touches.
+fn touched(place: [usize; 3], extent: [usize; 3]) -> u8 {
+    (0..3).fold(0, |mask, axis| {
         let (low, high) = (place[axis] == 0, place[axis] + 1 == extent[axis]);
         mask | u8::from(low) << (2 * axis) | u8::from(high) << (2 * axis + 1)
-    });
-    sides & touches
+    })
+}
+
+/// The sides of the lattice that the cells of a brick touch.
+#[derive(Clone, Copy)]
+pub(crate) struct BrickSides {
+    /// Those of the brick.
+    sides: u8,
+    /// The brick's cells, if the lattice ends before the brick does.
+    cut: Option<[usize; 3]>,
+}
+
+impl BrickSides {
+    #[inline]
+    pub(crate) fn new(bricks: &Bricks, brick: usize) -> Self {
+        let sides = bricks.sides(brick);
+        if sides == 0 {
+            return Self { sides, cut: None };
+        }
+        let extent = bricks.extent(brick);
+        Self { sides, cut: (extent != [bricks.edge; 3]).then_some(extent) }
+    }
+
+    /// The sides that a cell touches, as in [`Bricks::sides`].
+    #[inline(always)]
+    pub(crate) fn of(self, at: At) -> u8 {
+        self.sides & self.cut.map_or(at.sides, |extent| touched(at.place(), extent))
+    }
 }
 
 /// The closed box of the cells from `first` to before `end` (along each axis; no further than the lattice).
@@ -231,7 +268,11 @@ mod tests {
         let bricks = Bricks::new(4, [axis(7), axis(4), axis(2)], places, vec![[NONE; 27]; 2]);
         assert_eq!((bricks.extent(0), bricks.extent(1)), ([4, 4, 2], [3, 4, 2]));
         assert_eq!((bricks.sides(0), bricks.sides(1)), (0b11_1101, 0b11_1110));
-        assert_eq!(cell_sides(bricks.sides(1), [3, 4, 2], [2, 1, 0]), 0b01_0010);
+        let sides_of = |brick: usize, place| BrickSides::new(&bricks, brick).of(bricks.at(number(place)));
+        assert_eq!((sides_of(1, [2, 1, 0]), sides_of(1, [3, 1, 1])), (0b01_0010, 0b10_0000));
+        assert_eq!((sides_of(0, [3, 1, 0]), sides_of(0, [0, 3, 1])), (0b01_0000, 0b10_1001));
+        let whole = Bricks::new(4, [axis(8), axis(4), axis(4)], vec![[1, 0, 0]], vec![[NONE; 27]]);
+        assert_eq!(BrickSides::new(&whole, 0).of(whole.at(number([3, 0, 1]))), 0b00_0110);
         assert_eq!(
             box_of(&bricks.axes, [4, 0, 0], [8; 3]),
             Box3 { low: [4.0, 0.0, 0.0], high: [7.0, 4.0, 2.0] }

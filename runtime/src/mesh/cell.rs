@@ -18,6 +18,12 @@
 //!
 //! All 256 cases follow from these sentences and are computed when this crate is compiled.
 
+mod cases;
+mod cycles;
+
+pub(crate) use cases::{CellCases, case};
+pub(crate) use cycles::following;
+
 /// Marks an edge that the surface does not cross.
 const NO_SHEET: u8 = u8::MAX;
 
@@ -234,31 +240,6 @@ const fn number(group: [u8; 12], pinched: u8) -> Sheets {
     Sheets { of_edge, count, pinched }
 }
 
-/// The cycles around the sheets of a cell, from its corners inside and its flipped faces, a bit each: for
-/// each crossed edge the next edge of its sheet, counter-clockwise as seen from outside of the surface. For
-/// any other edge the edge itself.
-pub(crate) fn following(signs: u8, flips: u8) -> [u8; 12] {
-    let mut next: [u8; 12] = std::array::from_fn(|edge| edge as u8);
-    for face in 0..6 {
-        let (corners, edges) = (ring(face), ring_edges(face));
-        let is_inside = |i: usize| inside(signs, corners[i % 4]);
-        // A segment joins the edge where the walk around the face enters the inside to the edge where it
-        // leaves next; on a flipped face, to the edge where it left before.
-        let back = flips >> face & 1 == 1 && ambiguous(signs, face);
-        for enter in (0..4).filter(|&i| !is_inside(i) && is_inside(i + 1)) {
-            let goes_out = |&i: &usize| is_inside(i) && !is_inside(i + 1);
-            let leave = (1..4).map(|step| if back { enter + 4 - step } else { enter + step }).find(goes_out);
-            let Some(leave) = leave else { continue };
-            let (enter, leave) = (edges[enter], edges[leave % 4]);
-            // A ring goes counter-clockwise as seen from the high side of its axis. That is outside of the
-            // cell only for high faces.
-            let [from, to] = if face & 1 == 1 { [enter, leave] } else { [leave, enter] };
-            next[from] = to as u8;
-        }
-    }
-    next
-}
-
 /// The sheets of every case without flipped faces.
 static DEFAULT: [Sheets; 256] = {
     let mut sheets = [Sheets { of_edge: [NO_SHEET; 12], count: 0, pinched: 0 }; 256];
@@ -393,39 +374,6 @@ impl SheetEdges {
     pub(crate) fn have_rim(self, sides: u8) -> bool {
         self.have_quad(sides) && self.mask() & !inner_edges(sides) != 0
     }
-}
-
-/// What loops over cells ask of a case without flipped faces, inside the lattice.
-#[derive(Clone, Copy)]
-pub(crate) struct CellCase {
-    /// How many sheets there are. None if the surface does not cross the cell.
-    pub(crate) sheets: u8,
-    /// How many edges at the low corner are crossed: each has a quad.
-    pub(crate) quads: u8,
-    /// Whether any low face is pinched.
-    pub(crate) is_pinched_low: bool,
-}
-
-static CASES: [CellCase; 256] = {
-    let mut cases = [CellCase { sheets: 0, quads: 0, is_pinched_low: false }; 256];
-    let mut signs = 0;
-    while signs < 256 {
-        let differs =
-            (signs ^ signs >> 1) & 1 | ((signs ^ signs >> 2) & 1) << 1 | ((signs ^ signs >> 4) & 1) << 2;
-        cases[signs] = CellCase {
-            sheets: DEFAULT[signs].count,
-            quads: differs.count_ones() as u8,
-            is_pinched_low: DEFAULT[signs].pinched & 0b01_0101 != 0,
-        };
-        signs += 1;
-    }
-    cases
-};
-
-/// The case of these signs.
-#[inline(always)]
-pub(crate) fn case(signs: u8) -> CellCase {
-    CASES[usize::from(signs)]
 }
 
 /// The edges of the sheets of every case without flipped faces.

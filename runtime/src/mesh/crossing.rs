@@ -10,8 +10,8 @@ use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
-use super::brick::{Bricks, NONE, cell_sides, direction, number, place, starts};
-use super::cell::{CellCase, SheetEdges, case, default_edges, edges, sheets};
+use super::brick::{BrickSides, Bricks, NONE, direction, number, place, starts};
+use super::cell::{CellCases, SheetEdges, case, default_edges, edges, sheets};
 use super::report::Sides;
 use super::sample::BrickSamples;
 
@@ -181,6 +181,9 @@ impl FoundCells {
     }
 }
 
+/// Places for eight crossed cells and one that is not; a power of two, so that none is beyond them.
+const ROOM: usize = 16;
+
 /// Room for the signs of one brick.
 struct Signs {
     /// The number of points in its closed box.
@@ -190,7 +193,7 @@ struct Signs {
     pairs: Vec<u8>,
     /// For each point, the signs of the cell whose low corner it is.
     cells: Vec<u8>,
-    /// Room for the crossed cells of a brick, and one more.
+    /// Room for the crossed cells of a brick, and [`ROOM`] more.
     crossed: Vec<CrossedCell>,
 }
 
@@ -198,7 +201,7 @@ impl Signs {
     fn new(bricks: &Bricks) -> Self {
         let count = bricks.table_len();
         let padded = vec![0; count + bricks.stride().pow(2)];
-        let crossed = vec![CrossedCell::default(); bricks.edge.pow(3) + 1];
+        let crossed = vec![CrossedCell::default(); bricks.edge.pow(3) + ROOM];
         Self { count, points: padded.clone(), pairs: padded.clone(), cells: padded, crossed }
     }
 
@@ -281,20 +284,19 @@ impl Signs {
             }
             // In the others crossed cells are unpredictable, so there is no branch: each cell is written, and
             // the next one overwrites it unless it is crossed.
-            let first = count;
-            let mut pinched = false;
+            let (first, mut cases) = (count, CellCases::default());
+            let room: &mut [CrossedCell; ROOM] = self.crossed[first..].first_chunk_mut().expect("room");
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
-                let CellCase { sheets, quads, is_pinched_low } = case(signs);
-                let number = (octet as u16) << 3 | rest;
-                self.crossed[count] = CrossedCell { vertex: counts.vertices, number, signs, flips: 0 };
-                count += usize::from(sheets != 0);
-                counts.vertices += u32::from(sheets);
-                counts.quads += usize::from(quads);
-                pinched |= is_pinched_low;
+                let (vertex, number) = (counts.vertices + cases.sheets(), (octet as u16) << 3 | rest);
+                room[cases.crossed() % ROOM] = CrossedCell { vertex, number, signs, flips: 0 };
+                cases = cases.and(case(signs));
             }
-            if pinched {
+            count += cases.crossed();
+            counts.vertices += cases.sheets();
+            counts.quads += cases.quads();
+            if cases.pinched_low() > 0 {
                 let cells = (before..).zip(&self.crossed[..count]).skip(first);
-                let pinched = cells.filter(|(_, cell)| case(cell.signs).is_pinched_low);
+                let pinched = cells.filter(|(_, cell)| case(cell.signs).pinched_low() > 0);
                 found.suspects.extend(pinched.map(|(index, _)| (brick as u32, index as u32)));
             }
         }
@@ -378,15 +380,15 @@ struct BrickCounts {
 
 /// Numbers the vertices of a brick, and counts them and the quads.
 fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> BrickCounts {
-    let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
+    let sides = BrickSides::new(bricks, brick);
     let mut counts = BrickCounts::default();
     for cell in cells {
         cell.vertex = counts.vertices;
-        let touched = if sides == 0 { 0 } else { cell_sides(sides, extent, bricks.at(cell.number).place()) };
+        let touched = sides.of(bricks.at(cell.number));
         if touched == 0 && cell.flips == 0 {
-            let CellCase { sheets, quads, .. } = case(cell.signs);
-            counts.vertices += u32::from(sheets);
-            counts.quads += usize::from(quads);
+            let case = case(cell.signs);
+            counts.vertices += case.sheets();
+            counts.quads += case.quads();
             continue;
         }
         let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);

@@ -8,7 +8,7 @@ use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
-use super::brick::{At, Bricks, NONE, cell_sides, direction, number};
+use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
 use super::fill::{FilledVector, VectorPart};
@@ -49,33 +49,33 @@ pub(crate) fn triangles<E: Send>(
     Ok((triangles.finish(), found))
 }
 
-/// A set of vertices that is asked at each quad: a bit for each vertex, if any is in it.
+/// A set of vertices that is asked at each quad: a byte for each vertex, if any is in it.
 pub(crate) struct VertexSet {
-    words: Vec<u64>,
+    marks: Vec<u8>,
 }
 
 impl VertexSet {
     /// No vertex.
-    pub(crate) const NONE: Self = Self { words: Vec::new() };
+    pub(crate) const NONE: Self = Self { marks: Vec::new() };
 
     /// Some vertices, of this many.
     pub(crate) fn new(count: usize, vertices: &[u32]) -> Self {
         if vertices.is_empty() {
             return Self::NONE;
         }
-        let mut words = vec![0; count.div_ceil(64)];
-        vertices.iter().for_each(|vertex| words[(vertex / 64) as usize] |= 1 << (vertex % 64));
-        Self { words }
+        let mut marks = vec![0; count];
+        vertices.iter().for_each(|&vertex| marks[vertex as usize] = 1);
+        Self { marks }
     }
 
     /// Which of these quads, counted from the first one, have a vertex of the set.
     fn quads_with(&self, pairs: &[[[u32; 3]; 2]], first: usize) -> Vec<usize> {
-        if self.words.is_empty() {
+        if self.marks.is_empty() {
             return Vec::new();
         }
-        let bit = |vertex: u32| self.words[(vertex / 64) as usize] >> (vertex % 64) & 1;
+        let mark = |vertex: u32| self.marks[vertex as usize];
         // Whatever the diagonal is, these are the four corners: see `halves`.
-        let has_any = |[[q, r, _], [_, s, p]]: &[[u32; 3]; 2]| bit(*p) | bit(*q) | bit(*r) | bit(*s) == 1;
+        let has_any = |[[q, r, _], [_, s, p]]: &[[u32; 3]; 2]| mark(*p) | mark(*q) | mark(*r) | mark(*s) == 1;
         (first..).zip(pairs).filter(|(_, pair)| has_any(pair)).map(|(quad, _)| quad).collect()
     }
 }
@@ -91,26 +91,23 @@ struct CellVertices {
 struct CellEntry {
     /// The brick's first vertex.
     vertex: u32,
-    /// The sides of the lattice that the brick touches.
-    sides: u8,
-    extent: [usize; 3],
+    sides: BrickSides,
 }
 
 impl CellEntry {
     fn new(bricks: &Bricks, crossings: &Crossings, brick: usize) -> Self {
         let vertex = crossings.vertices[brick] as u32;
-        Self { vertex, sides: bricks.sides(brick), extent: bricks.extent(brick) }
+        Self { vertex, sides: BrickSides::new(bricks, brick) }
     }
 
     #[inline(always)]
     fn vertices(&self, cell: &CrossedCell, at: At) -> CellVertices {
-        let mut sheets = default_numbers(cell.signs);
-        if self.sides != 0 || cell.flips != 0 {
-            let sides = cell_sides(self.sides, self.extent, at.place());
-            if sides != 0 || cell.flips != 0 {
-                sheets = sheets_with_quads(cell.signs, cell.flips, sides).numbers();
-            }
-        }
+        let sides = self.sides.of(at);
+        let sheets = if sides == 0 && cell.flips == 0 {
+            default_numbers(cell.signs)
+        } else {
+            sheets_with_quads(cell.signs, cell.flips, sides).numbers()
+        };
         CellVertices { vertex: self.vertex + cell.vertex, sheets }
     }
 }
@@ -185,7 +182,8 @@ impl Around {
     /// as a set of sets of axes.
     fn enter_own(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
         let enter = CellEntry::new(bricks, crossings, brick);
-        let cut = enter.sides & 1 | enter.sides >> 1 & 2 | enter.sides >> 2 & 4;
+        let sides = bricks.sides(brick);
+        let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
         let cells = crossings.of(brick);
         self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
         // Without a branch, which would be mispredicted for every third edge: an entry that is not to stay is

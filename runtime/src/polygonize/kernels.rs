@@ -146,6 +146,10 @@ impl Field for Kernels {
         [gx, gy, gz]: [&mut [f32]; 3],
         attributes: &mut [&mut [f32]],
     ) -> Result<(), EvalError> {
+        // Small bricks have few points: a list in memory would be a part of their time.
+        if attributes.is_empty() {
+            return self.all.eval_region(region, [x, y, z], &mut [field, gx, gy, gz]);
+        }
         let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
         planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
         self.all.eval_region(region, [x, y, z], &mut planes)

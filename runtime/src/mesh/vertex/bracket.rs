@@ -12,6 +12,8 @@
 //! the lattice, and a middle depends on its two ends alone, so all cells around an edge, in any brick, find
 //! the same.
 
+use std::borrow::BorrowMut;
+
 use super::super::field::Field;
 
 /// Two points, and the field at them: the first is outside, the second inside.
@@ -90,12 +92,13 @@ impl BracketPoints {
         field: &F,
         region: &F::Region,
         iso: f32,
-        brackets: &mut [&mut Bracket],
+        brackets: &mut [impl BorrowMut<Bracket>],
         times: usize,
     ) -> Result<u64, F::Error> {
         for _ in 0..times {
-            let values = self.ask(field, region, brackets.iter().map(|bracket| bracket.middle()))?;
-            for (bracket, &value) in brackets.iter_mut().zip(values) {
+            let middles = brackets.iter().map(|bracket| bracket.borrow().middle());
+            let values = self.ask(field, region, middles)?;
+            for (bracket, &value) in brackets.iter_mut().map(BorrowMut::borrow_mut).zip(values) {
                 bracket.cut(iso, bracket.middle(), value);
             }
         }
@@ -211,6 +214,10 @@ pub(super) struct CrossedEdges {
     /// The entries that are not 0.
     used: Vec<usize>,
     points: BracketPoints,
+    /// Edges that are to be halved; those of them that are not as far yet as a look, and their brackets.
+    wanted: Vec<u32>,
+    behind: Vec<u32>,
+    brackets: Vec<Bracket>,
 }
 
 impl CrossedEdges {
@@ -314,17 +321,27 @@ impl CrossedEdges {
         edges: impl Iterator<Item = &'a u32>,
         last: usize,
     ) -> Result<u64, F::Error> {
-        let mut wanted = vec![false; self.edges.len()];
-        edges.for_each(|&edge| wanted[edge as usize] = true);
+        let mut wanted = std::mem::take(&mut self.wanted);
+        wanted.clear();
+        wanted.extend(edges);
+        // Sheets share edges.
+        wanted.sort_unstable();
+        wanted.dedup();
         let mut asked = 0;
         for look in 1..=last {
-            let both = self.edges.iter_mut().zip(&wanted);
-            let mut behind: Vec<&mut CrossedEdge> =
-                both.filter(|(edge, wanted)| **wanted && edge.look < look).map(|(edge, _)| edge).collect();
-            let mut brackets: Vec<&mut Bracket> = behind.iter_mut().map(|edge| &mut edge.bracket).collect();
-            asked += self.points.halve(field, region, iso, &mut brackets, LOOKS[look] - LOOKS[look - 1])?;
-            behind.into_iter().for_each(|edge| edge.look(look));
+            let is_behind = |edge: &&u32| self.edges[**edge as usize].look < look;
+            self.behind.clear();
+            self.behind.extend(wanted.iter().filter(is_behind));
+            self.brackets.clear();
+            self.brackets.extend(self.behind.iter().map(|&edge| self.edges[edge as usize].bracket));
+            let times = LOOKS[look] - LOOKS[look - 1];
+            asked += self.points.halve(field, region, iso, &mut self.brackets, times)?;
+            for (&edge, &bracket) in self.behind.iter().zip(&self.brackets) {
+                self.edges[edge as usize].bracket = bracket;
+                self.edges[edge as usize].look(look);
+            }
         }
+        self.wanted = wanted;
         Ok(asked)
     }
 }

@@ -1,7 +1,7 @@
 //! A sheet of a cell with its crossings in order. The position and the normal of its vertex are computed from
 //! it elsewhere.
 
-use super::super::brick::{Bricks, cell_sides, place};
+use super::super::brick::{BrickSides, Bricks, place};
 use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
 use super::super::crossing::CrossedCell;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
@@ -53,7 +53,7 @@ impl Sheet {
         crossed: &mut CrossedEdges,
     ) -> Self {
         let (origin, place) = (bricks.origin(brick), place(cell.number));
-        let sides = cell_sides(bricks.sides(brick), bricks.extent(brick), place);
+        let sides = BrickSides::new(bricks, brick).of(bricks.at(cell.number));
         let mask = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
         let next = following(cell.signs, cell.flips);
         let first = bricks.at(cell.number).in_table();

@@ -1,6 +1,6 @@
 //! The starts of the vertices of a brick: the means of their sheets' crossings.
 
-use super::super::brick::cell_sides;
+use super::super::brick::BrickSides;
 use super::super::cell::{case, default_edges, edges, first_edges};
 use super::super::error::MAX_BRICK;
 use super::super::field::Field;
@@ -30,20 +30,20 @@ impl VertexBatch {
     /// Collects the seeds of the vertices of a brick. Lanes behind the last vertex keep data of other bricks.
     fn sow<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize) {
         let VertexSource { bricks, crossings, .. } = source;
-        let (origin, extent, lattice_sides) =
-            (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
+        let (origin, extent) = (bricks.origin(brick), bricks.extent(brick));
+        let lattice_sides = BrickSides::new(bricks, brick);
         let axes = [0, 1, 2].map(|axis| sides(&bricks.axes[axis][origin[axis]..][..extent[axis] + 1]));
         let mut next = 0;
         for cell in crossings.of(brick) {
-            let (place, corners) = (bricks.at(cell.number).place(), &self.corners(bricks, cell));
+            let (at, corners) = (bricks.at(cell.number), &self.corners(bricks, cell));
+            let (place, touched) = (at.place(), lattice_sides.of(at));
             let home = [0, 1, 2].map(|axis| axes[axis][place[axis] % MAX_BRICK]);
             // Nearly all cells.
-            if lattice_sides == 0 && cell.flips == 0 && case(cell.signs).sheets == 1 {
+            if touched == 0 && cell.flips == 0 && case(cell.signs).sheets() == 1 {
                 self.seeds[next / LANES].put(next % LANES, corners, home, first_edges(cell.signs));
                 next += 1;
                 continue;
             }
-            let touched = if lattice_sides == 0 { 0 } else { cell_sides(lattice_sides, extent, place) };
             let flipped;
             let sheets = match cell.flips {
                 0 => default_edges(cell.signs),
