@@ -18,9 +18,10 @@ use jbt_ir::limits::MAX_BRICKS;
 
 use crate::parallel::*;
 
-use super::brick::{Bricks, NONE, SELF, box_of};
+use super::brick::{Bricks, NONE, SELF, box_of, starts};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
+use super::fill::{FilledVector, VectorPart};
 use super::options::Options;
 use super::report::Sides;
 use super::scope::DivisionScope;
@@ -226,6 +227,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         };
         let groups: Vec<BoxChildren<F::Region>> = scatter(|watches| {
             let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
+            let groups = groups.with_max_len(piece(level.places.len().div_ceil(group)));
             groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
         })?;
         let mut masks = Vec::with_capacity(level.places.len());
@@ -365,8 +367,8 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     }
 }
 
-/// Parents that are linked between two questions: some milliseconds.
-const LINKED: usize = 1 << 13;
+/// Parents that are linked at a time.
+const LINKED: usize = 1 << 8;
 
 /// Places of boxes, and their neighbours.
 type LinkedBoxes = (Vec<[u32; 3]>, Vec<[u32; 27]>);
@@ -377,12 +379,7 @@ fn link(
     masks: &[u8],
     progress: &Progress<'_>,
 ) -> Result<LinkedBoxes, Cancelled> {
-    let mut firsts = Vec::with_capacity(masks.len());
-    let mut count = 0;
-    for mask in masks {
-        firsts.push(count);
-        count += mask.count_ones();
-    }
+    let firsts = starts(masks.iter().map(|mask| mask.count_ones() as usize));
     let of_child = |parent: usize, child: usize| {
         let place = [0, 1, 2].map(|axis| 2 * places[parent][axis] + (child >> axis & 1) as u32);
         let around = KIN[child].map(|(direction, kin)| {
@@ -391,25 +388,32 @@ fn link(
                 return NONE;
             }
             let mask = masks[parent as usize];
-            firsts[parent as usize] + (mask & ((1 << kin) - 1)).count_ones()
+            firsts[parent as usize] as u32 + (mask & ((1 << kin) - 1)).count_ones()
         });
         (place, around)
     };
-    let of_parent = |parent: usize| {
-        (0..8).filter(move |&child| masks[parent] >> child & 1 == 1).map(move |child| of_child(parent, child))
-    };
-    let (mut all_places, mut all_neighbours) =
-        (Vec::with_capacity(count as usize), Vec::with_capacity(count as usize));
-    for first in (0..masks.len()).step_by(LINKED) {
+    let count = firsts[masks.len()];
+    let (mut all_places, mut all_neighbours) = (FilledVector::new(count), FilledVector::new(count));
+    let places = all_places.parts(&firsts, LINKED, 1).into_iter();
+    let parts: Vec<LinkedPart<'_>> = places.zip(all_neighbours.parts(&firsts, LINKED, 1)).collect();
+    let of_part = |(index, (places, neighbours)): (usize, LinkedPart<'_>)| {
         progress.breathe()?;
-        let parents = first..masks.len().min(first + LINKED);
-        let (mut places, mut neighbours): (Vec<_>, Vec<_>) =
-            scatter(|_| parents.into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip());
-        all_places.append(&mut places);
-        all_neighbours.append(&mut neighbours);
-    }
-    Ok((all_places, all_neighbours))
+        let mut children = places.open().iter_mut().zip(neighbours.open());
+        let first = index * LINKED;
+        for (parent, mask) in (first..).zip(&masks[first..]).take(LINKED) {
+            let kept = (0..8).filter(|&child| mask >> child & 1 == 1);
+            for (child, (place, around)) in kept.zip(&mut children) {
+                (*place, *around) = of_child(parent, child);
+            }
+        }
+        Ok(())
+    };
+    scatter(|_| parts.into_par_iter().enumerate().try_for_each(of_part))?;
+    Ok((all_places.finish(), all_neighbours.finish()))
 }
+
+/// What the children of some boxes fill.
+type LinkedPart<'a> = (VectorPart<'a, [u32; 3]>, VectorPart<'a, [u32; 27]>);
 
 /// For each child and each direction: the direction of the neighbour's parent, and which child of that parent
 /// the neighbour is.

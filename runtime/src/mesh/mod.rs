@@ -60,7 +60,6 @@ mod pull;
 mod report;
 mod sample;
 mod scope;
-mod settle;
 #[cfg(feature = "simplify")]
 mod simplify;
 mod stage;

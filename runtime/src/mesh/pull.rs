@@ -8,6 +8,9 @@ pub(super) const LANES: usize = 8;
 /// A number for each of some vertices. Loops over lanes have no branches and compile to vector instructions.
 pub(super) type VertexLanes = [f32; LANES];
 
+/// A plane of numbers for each of three components.
+pub(super) type VertexPlanes = [Vec<f32>; 3];
+
 /// Sums of squares by lanes.
 #[inline(always)]
 pub(super) fn squares([x, y, z]: &[VertexLanes; 3]) -> VertexLanes {

@@ -75,8 +75,9 @@ pub struct MeshReport {
     /// Points at which everything was evaluated: once per vertex, and once more for vertices at a jump or
     /// that a crease kept off the surface.
     pub full_evaluations: u64,
-    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of suspect
-    /// cells, and at walls.
+    /// Points at which the field alone was evaluated, beside those of the lattice: on crossed edges of
+    /// suspect cells and at walls, to find out where it jumps; and between points inside and outside, for
+    /// vertices that a crease kept off the surface.
     pub jump_evaluations: u64,
     /// Vertices at which the field jumps, as at the walls of `within`.
     pub jump_vertices: u64,

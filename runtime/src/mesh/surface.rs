@@ -43,8 +43,11 @@ pub(crate) fn triangles<E: Send>(
         }
         Ok(marked.quads_with(all, crossings.quads[first]))
     };
-    let found: Result<Vec<Vec<usize>>, E> =
-        scatter(|_| groups.into_par_iter().enumerate().map_init(|| Around::new(bricks), fill).collect());
+    let most = piece(groups.len());
+    let found: Result<Vec<Vec<usize>>, E> = scatter(|_| {
+        let groups = groups.into_par_iter().enumerate().with_max_len(most);
+        groups.map_init(|| Around::new(bricks), fill).collect()
+    });
     let found = found?.concat();
     Ok((triangles.finish(), found))
 }

@@ -7,6 +7,7 @@ mod margin;
 mod normal;
 mod room;
 mod seed;
+mod settle;
 mod sharp;
 mod sheet;
 pub(super) mod side;
@@ -24,12 +25,12 @@ use super::error::MeshError;
 use super::field::Field;
 use super::fill::{FilledVector, VectorPart};
 use super::indexed::{Attribute, Mesh};
-use super::pull::{LANES, VertexLanes, pull_lanes};
+use super::pull::{LANES, VertexLanes, VertexPlanes, pull_lanes};
 use super::stage::MeshStage;
 use crate::progress::Progress;
 use crate::span::span;
 
-use batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
+use batch::{Done, VertexBatch, VertexSource, lane, lanes};
 use normal::normals_of;
 use seed::SeedGroup;
 
@@ -71,7 +72,7 @@ pub(crate) fn finish<F: Field>(
         Ok::<_, MeshError<F::Error>>(done)
     };
     let done = scatter(|watches| {
-        let work = targets.into_par_iter().enumerate();
+        let work = targets.into_par_iter().enumerate().with_max_len(piece(total));
         let work =
             work.map_init(VertexBatch::default, |batch, target| watches.hold(|| finish(batch, target)));
         work.try_reduce(Done::default, |a, b| Ok(a.and(b)))

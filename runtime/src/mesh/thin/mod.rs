@@ -44,7 +44,10 @@ pub(super) fn find<F: Field>(
 ) -> Result<ThinReport, MeshError<F::Error>> {
     span!("thin parts");
     let bricks = &division.bricks;
-    let crossed = CrossedBlocks::new(bricks, crossings);
+    let crossed = {
+        span!("crossed blocks");
+        CrossedBlocks::new(bricks, crossings)
+    };
     let (edge, places, regions) = match &division.chunks {
         Some((places, regions)) => (2 * EDGE, places, regions),
         None => (bricks.edge, &bricks.places, &division.regions),
@@ -55,10 +58,11 @@ pub(super) fn find<F: Field>(
     let mut report = ThinReport { shredded: alarms.len() as u64, ..ThinReport::default() };
     let blocks = (bricks.edge == EDGE).then(|| (&bricks.places[..], &division.regions[..]));
     let search = ThinSearch { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
-    let group = 64;
+    let group = 16;
     let total = places.len().div_ceil(group);
     MeshStage::Thin.begin(progress)?;
     let of_group = |(places, regions): (&[[u32; 3]], &[F::Region])| {
+        span!("search of some boxes");
         let (mut found, mut near) = (ChunkFindings::default(), 0);
         for (&place, region) in places.iter().zip(regions) {
             search.chunk((edge, place), region, &mut near, &mut found)?;
@@ -69,6 +73,7 @@ pub(super) fn find<F: Field>(
     };
     let found: Vec<ChunkFindings> = scatter(|watches| {
         let groups = places.par_chunks(group).zip(regions.par_chunks(group));
+        let groups = groups.with_max_len(piece(total));
         groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
     })?;
     for found in found {
@@ -82,6 +87,7 @@ pub(super) fn find<F: Field>(
     let places = join(&alarms);
     report.places = places.len() as u64;
     let points: Vec<[f32; 3]> = places.iter().take(MAX_NEAR).map(|&alarm| alarms[alarm].point).collect();
+    span!("measure of thin parts");
     report.cell = measure::cell(field, &bricks.axes, iso, &points)?;
     report.near = points.iter().map(|point| point.map(f64::from)).collect();
     Ok(report)

@@ -25,6 +25,7 @@ use crate::mesh::field::Field;
 use crate::mesh::indexed::Mesh;
 use crate::mesh::vertex::side::{CutVertex, SharpVertex};
 use crate::morton::morton;
+use crate::span::span;
 
 /// Vertices are tested where at least one of this many crossed edges in a block is lone. A sheet of nine
 /// tenths of a cell, across a diagonal of the lattice, has twice as many lone edges.
@@ -71,6 +72,7 @@ struct ShredProbe {
 impl<F: Field> Looked<'_, F> {
     /// The blocks in which the surface is in shreds.
     pub(super) fn shreds(&self) -> Result<Vec<Alarm>, MeshError<F::Error>> {
+        span!("shreds");
         scatter(|watches| {
             let blocks = (0..self.crossed.len()).into_par_iter().with_min_len(256);
             blocks.filter_map(|block| watches.hold(|| self.block(block)).transpose()).collect()

@@ -4,7 +4,7 @@ use super::super::brick::Bricks;
 use super::super::crossing::{CrossedCell, Crossings};
 use super::super::field::Field;
 use super::super::options::Options;
-use super::super::pull::{LANES, VertexLanes};
+use super::super::pull::{LANES, VertexLanes, VertexPlanes};
 use super::super::sample::{BrickSamples, corners};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
@@ -18,7 +18,7 @@ pub(in super::super) struct Done {
     pub(in super::super) gradient_evaluations: u64,
     /// Points at which everything was evaluated.
     pub(in super::super) full_evaluations: u64,
-    /// Points at which the field was evaluated to find jumps and to follow walls.
+    /// Points at which the field was evaluated to find jumps, to follow walls and to settle strays.
     pub(in super::super) jump_evaluations: u64,
     /// Vertices at jumps.
     pub(in super::super) jump_vertices: u64,
@@ -63,9 +63,6 @@ pub(super) struct Shared {
     /// The rise of the field along the edges of its sheet.
     pub(super) rise: [f32; 3],
 }
-
-/// Three planes of numbers.
-pub(super) type VertexPlanes = [Vec<f32>; 3];
 
 /// The vertices of one brick, in planes padded to whole [`LANES`].
 #[derive(Default)]

@@ -15,6 +15,7 @@
 use std::borrow::BorrowMut;
 
 use super::super::field::Field;
+use super::super::pull::VertexPlanes;
 
 /// Two points, and the field at them: the first is outside, the second inside.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +27,7 @@ pub(super) struct Bracket {
 impl Bracket {
     /// The middle of its ends. A coordinate that both ends share is kept exactly.
     pub(super) fn middle(&self) -> [f32; 3] {
-        let [outside, inside] = self.ends;
-        [0, 1, 2].map(|axis| 0.5 * outside[axis] + 0.5 * inside[axis])
+        middle(self.ends)
     }
 
     /// The rise of the field from outside to inside. NaN where the field at an end is not finite.
@@ -59,11 +59,16 @@ impl Bracket {
     }
 }
 
-/// Room for points and the field at them.
+fn middle([outside, inside]: [[f32; 3]; 2]) -> [f32; 3] {
+    [0, 1, 2].map(|axis| 0.5 * outside[axis] + 0.5 * inside[axis])
+}
+
+/// Room for points, and the field and its gradient at them.
 #[derive(Default)]
 pub(super) struct BracketPoints {
-    planes: [Vec<f32>; 3],
+    planes: VertexPlanes,
     values: Vec<f32>,
+    gradient: VertexPlanes,
 }
 
 impl BracketPoints {
@@ -74,16 +79,40 @@ impl BracketPoints {
         region: &F::Region,
         points: impl Iterator<Item = [f32; 3]>,
     ) -> Result<&[f32], F::Error> {
+        self.take(points);
+        self.evaluate(field, region)?;
+        Ok(&self.values)
+    }
+
+    fn evaluate<F: Field>(&mut self, field: &F, region: &F::Region) -> Result<(), F::Error> {
+        let [x, y, z] = &self.planes;
+        self.values.resize(x.len(), 0.0);
+        if x.is_empty() { Ok(()) } else { field.field(region, x, y, z, &mut self.values) }
+    }
+
+    /// Evaluates the field and its gradient at the points.
+    pub(super) fn ask_gradient<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        points: impl Iterator<Item = [f32; 3]>,
+    ) -> Result<(&[f32], &VertexPlanes), F::Error> {
+        self.take(points);
+        let [x, y, z] = &self.planes;
+        self.values.resize(x.len(), 0.0);
+        self.gradient.iter_mut().for_each(|plane| plane.resize(x.len(), 0.0));
+        if !x.is_empty() {
+            let gradient = self.gradient.each_mut().map(Vec::as_mut_slice);
+            field.gradient(region, x, y, z, &mut self.values, gradient)?;
+        }
+        Ok((&self.values, &self.gradient))
+    }
+
+    fn take(&mut self, points: impl Iterator<Item = [f32; 3]>) {
         self.planes.iter_mut().for_each(Vec::clear);
         for point in points {
             self.planes.iter_mut().zip(point).for_each(|(plane, coordinate)| plane.push(coordinate));
         }
-        let [x, y, z] = &self.planes;
-        self.values.resize(x.len(), 0.0);
-        if !x.is_empty() {
-            field.field(region, x, y, z, &mut self.values)?;
-        }
-        Ok(&self.values)
     }
 
     /// Halves brackets a number of times. Returns the number of points evaluated.
@@ -95,16 +124,59 @@ impl BracketPoints {
         brackets: &mut [impl BorrowMut<Bracket>],
         times: usize,
     ) -> Result<u64, F::Error> {
-        for _ in 0..times {
-            let middles = brackets.iter().map(|bracket| bracket.borrow().middle());
-            let values = self.ask(field, region, middles)?;
-            for (bracket, &value) in brackets.iter_mut().map(BorrowMut::borrow_mut).zip(values) {
-                bracket.cut(iso, bracket.middle(), value);
+        let most = if brackets.len() <= FEW_BRACKETS { MOST_AT_ONCE } else { 1 };
+        let (mut done, mut asked) = (0, 0);
+        while done < times {
+            let halvings = most.min(times - done);
+            asked += self.halve_at_once(field, region, iso, brackets, halvings)?;
+            done += halvings;
+        }
+        Ok(asked)
+    }
+
+    /// Halves brackets some times with one question: for all middles that there may be. Returns the number of
+    /// points evaluated.
+    fn halve_at_once<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        brackets: &mut [impl BorrowMut<Bracket>],
+        halvings: usize,
+    ) -> Result<u64, F::Error> {
+        let parts = 1 << halvings;
+        self.planes.iter_mut().for_each(Vec::clear);
+        for bracket in &*brackets {
+            // The ends of all parts, the outside first.
+            let mut ends = [[0.0; 3]; (1 << MOST_AT_ONCE) + 1];
+            [ends[0], ends[parts]] = bracket.borrow().ends;
+            for step in (0..halvings).map(|halving| parts >> halving) {
+                for first in (0..parts).step_by(step) {
+                    ends[first + step / 2] = middle([ends[first], ends[first + step]]);
+                }
+            }
+            for (axis, plane) in self.planes.iter_mut().enumerate() {
+                plane.extend(ends[1..parts].iter().map(|end| end[axis]));
             }
         }
-        Ok((times * brackets.len()) as u64)
+        self.evaluate(field, region)?;
+        for (n, bracket) in brackets.iter_mut().map(BorrowMut::borrow_mut).enumerate() {
+            let mut first = 0;
+            for step in (1..=halvings).map(|halving| parts >> halving) {
+                let index = n * (parts - 1) + first + step - 1;
+                let value = self.values[index];
+                bracket.cut(iso, self.planes.each_ref().map(|plane| plane[index]), value);
+                first += if value >= iso { 0 } else { step };
+            }
+        }
+        Ok(self.values.len() as u64)
     }
 }
+
+/// Brackets up to which some halvings are one question: fewer blocks of points then, and fewer calls.
+const FEW_BRACKETS: usize = 6;
+/// The halvings of such a question.
+const MOST_AT_ONCE: usize = 3;
 
 /// The numbers of halvings after which an edge is examined; after the last one the bracket has its final
 /// length.
@@ -213,7 +285,7 @@ pub(super) struct CrossedEdges {
     numbers: Vec<u32>,
     /// The entries that are not 0.
     used: Vec<usize>,
-    points: BracketPoints,
+    pub(super) points: BracketPoints,
     /// Edges that are to be halved; those of them that are not as far yet as a look, and their brackets.
     wanted: Vec<u32>,
     behind: Vec<u32>,

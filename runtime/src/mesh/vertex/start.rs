@@ -2,7 +2,6 @@
 
 use super::super::brick::BrickSides;
 use super::super::cell::{case, default_edges, edges, first_edges};
-use super::super::error::MAX_BRICK;
 use super::super::field::Field;
 use super::super::pull::LANES;
 use super::batch::{Shared, VertexBatch, VertexSource};
@@ -32,12 +31,12 @@ impl VertexBatch {
         let VertexSource { bricks, crossings, .. } = source;
         let (origin, extent) = (bricks.origin(brick), bricks.extent(brick));
         let lattice_sides = BrickSides::new(bricks, brick);
-        let axes = [0, 1, 2].map(|axis| sides(&bricks.axes[axis][origin[axis]..][..extent[axis] + 1]));
+        let axes = [0, 1, 2].map(|axis| &bricks.axes[axis][origin[axis]..=origin[axis] + extent[axis]]);
         let mut next = 0;
         for cell in crossings.of(brick) {
             let (at, corners) = (bricks.at(cell.number), &self.corners(bricks, cell));
             let (place, touched) = (at.place(), lattice_sides.of(at));
-            let home = [0, 1, 2].map(|axis| axes[axis][place[axis] % MAX_BRICK]);
+            let home = [0, 1, 2].map(|axis| [axes[axis][place[axis]], axes[axis][place[axis] + 1]]);
             // Nearly all cells.
             if touched == 0 && cell.flips == 0 && case(cell.signs).sheets() == 1 {
                 self.seeds[next / LANES].put(next % LANES, corners, home, first_edges(cell.signs));
@@ -63,13 +62,4 @@ impl VertexBatch {
             }
         }
     }
-}
-
-/// The sides of cells along one axis of a brick.
-fn sides(axis: &[f32]) -> [[f32; 2]; MAX_BRICK] {
-    let mut sides = [[0.0; 2]; MAX_BRICK];
-    for (cell, &ends) in sides.iter_mut().zip(axis.array_windows()) {
-        *cell = ends;
-    }
-    sides
 }

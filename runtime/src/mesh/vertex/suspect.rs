@@ -13,10 +13,10 @@
 //! vertex.
 
 use super::super::field::Field;
-use super::super::pull::{LANES, VertexLanes, squares};
-use super::super::settle::{Stray, VertexPlace, is_far, settle};
-use super::batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
+use super::super::pull::{LANES, VertexLanes, VertexPlanes, squares};
+use super::batch::{Done, VertexBatch, VertexSource, lane, lanes};
 use super::seed::SeedGroup;
+use super::settle::{Stray, VertexPlace, is_far, settle};
 use super::sheet::{Sheet, Start};
 use super::wall::{Wall, follow};
 
@@ -112,7 +112,9 @@ impl VertexBatch {
             }
         }
         jump_evaluations += follow(*field, region, iso, &mut walls)?;
-        let gradient_evaluations = settle(*field, region, iso, &mut strays)?;
+        let points = &mut self.crossed.points;
+        let [gradient_evaluations, halvings] = settle(*field, region, iso, &mut strays, points)?;
+        jump_evaluations += halvings;
         self.jumped.extend(walls.iter().map(|wall| wall.vertex));
         let placed = walls.iter().map(|wall| {
             let &Wall { vertex, position, inside, normal, .. } = wall;

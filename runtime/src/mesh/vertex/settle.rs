@@ -1,15 +1,17 @@
 //! Vertices that Newton's steps left off the surface: at a crease two surfaces alternate in pulling.
 //!
 //! ```text
-//! a stray goes on being pulled; what it passes on the way is remembered:
+//! a stray goes on being pulled until it is settled, by its own gradient; what it passes is remembered:
 //!     the position nearest to the iso-value, one position inside, one position outside
-//! if it has never been on one side, the nearest corner of the cell there takes the place
-//! between the two sides lies the surface: halve the way from one to the other
+//! of those that are not settled then:
+//!     if one has never been on one side, the nearest corner of the cell there takes the place
+//!     between the two sides lies the surface: halve the way from one to the other
 //! the best position wins; it is within the cell, as everything on the way was
 //! ```
 
-use super::field::Field;
-use super::pull::{LANES, VertexLanes, pull};
+use super::super::field::Field;
+use super::super::pull::{LANES, VertexLanes, pull};
+use super::bracket::{Bracket, BracketPoints};
 use crate::boxes::Box3;
 
 /// The number of further pulls of a stray.
@@ -19,6 +21,8 @@ const HALVINGS: usize = 10;
 /// A vertex is a stray if its distance to the surface, estimated by its own gradient, is more than this part
 /// of its cell.
 const TOLERANCE: f32 = 1e-3;
+/// A stray is settled if its distance to the surface is at most this part of its cell.
+const SETTLED: f32 = TOLERANCE / 64.0;
 
 /// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
 /// `square` is the squared length of the gradient. A gradient of NaN gives 0.
@@ -67,8 +71,8 @@ pub(super) struct Stray {
     gradient: [f32; 3],
     best: [f32; 3],
     error: f32,
-    inside: Option<[f32; 3]>,
-    outside: Option<[f32; 3]>,
+    /// The last positions outside and inside.
+    sides: [Option<([f32; 3], f32)>; 2],
 }
 
 impl Stray {
@@ -81,19 +85,9 @@ impl Stray {
         value: f32,
         gradient: [f32; 3],
     ) -> Self {
-        let error = (value - iso).abs();
-        let mut stray = Self {
-            index,
-            place,
-            position,
-            value,
-            gradient,
-            best: position,
-            error,
-            inside: None,
-            outside: None,
-        };
-        stray.note(iso);
+        let (best, error) = (position, (value - iso).abs());
+        let mut stray = Self { index, place, position, value, gradient, best, error, sides: [None; 2] };
+        stray.note(iso, position, value);
         stray
     }
 
@@ -102,61 +96,65 @@ impl Stray {
         self.best
     }
 
-    /// Records the current position.
-    fn note(&mut self, iso: f32) {
-        let error = (self.value - iso).abs();
+    /// Records a position with the field there.
+    fn note(&mut self, iso: f32, position: [f32; 3], value: f32) {
+        let error = (value - iso).abs();
         if error < self.error {
-            (self.best, self.error) = (self.position, error);
+            (self.best, self.error) = (position, error);
         }
-        let side = if self.value >= iso { &mut self.inside } else { &mut self.outside };
-        *side = Some(self.position);
+        self.sides[usize::from(value >= iso)] = Some((position, value));
+    }
+
+    /// Whether its position is on the surface, by its own gradient.
+    fn is_settled(&self, iso: f32) -> bool {
+        let Box3 { low, high } = self.place.bounds;
+        let [x, y, z] = self.gradient;
+        (self.value - iso).abs() <= SETTLED * (high[0] - low[0]) * (x * x + y * y + z * z).sqrt()
+    }
+
+    /// A way from outside to inside.
+    fn way(&self) -> Option<Bracket> {
+        // Nobody has asked for the field at a corner.
+        let corner = |inside| Some((self.place.corner(inside, self.best)?, f32::NAN));
+        let [outside, inside] = self.sides;
+        let (outside, inside) = (outside.or_else(|| corner(false))?, inside.or_else(|| corner(true))?);
+        Some(Bracket { ends: [outside.0, inside.0], values: [outside.1, inside.1] })
     }
 }
 
-/// Moves strays nearer to the surface. Returns the number of points at which the gradient was evaluated.
+/// Moves strays nearer to the surface. Returns the numbers of points at which the gradient was evaluated, and
+/// the field alone.
 pub(super) fn settle<F: Field>(
     field: &F,
     region: &F::Region,
     iso: f32,
     strays: &mut [Stray],
-) -> Result<u64, F::Error> {
-    if strays.is_empty() {
-        return Ok(0);
-    }
-    let plane = vec![0.0f32; strays.len()];
-    let mut values = plane.clone();
-    let mut gradient = [plane.clone(), plane.clone(), plane];
-    let at = |strays: &[Stray]| {
-        [0, 1, 2].map(|axis| strays.iter().map(|s| s.position[axis]).collect::<Vec<f32>>())
-    };
+    points: &mut BracketPoints,
+) -> Result<[u64; 2], F::Error> {
+    let mut left: Vec<&mut Stray> = strays.iter_mut().collect();
+    let mut pulls = 0;
     for _ in 0..ROUNDS {
-        for stray in &mut *strays {
+        if left.is_empty() {
+            break;
+        }
+        for stray in &mut left {
             stray.position = pull(iso, stray.position, stray.value, stray.gradient, stray.place.bounds);
         }
-        let [x, y, z] = at(strays);
-        field.gradient(region, &x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
-        for (i, stray) in strays.iter_mut().enumerate() {
+        let (values, gradient) =
+            points.ask_gradient(field, region, left.iter().map(|stray| stray.position))?;
+        for (i, stray) in left.iter_mut().enumerate() {
             stray.value = values[i];
             stray.gradient = gradient.each_ref().map(|plane| plane[i]);
-            stray.note(iso);
+            stray.note(iso, stray.position, stray.value);
         }
+        pulls += left.len() as u64;
+        left.retain(|stray| !stray.is_settled(iso));
     }
-    for stray in &mut *strays {
-        stray.inside = stray.inside.or_else(|| stray.place.corner(true, stray.best));
-        stray.outside = stray.outside.or_else(|| stray.place.corner(false, stray.best));
+    let (mut left, mut ways): (Vec<&mut Stray>, Vec<Bracket>) =
+        left.into_iter().filter_map(|stray| stray.way().map(|way| (stray, way))).unzip();
+    let halvings = points.halve(field, region, iso, &mut ways, HALVINGS)?;
+    for (stray, Bracket { ends, values }) in left.iter_mut().zip(ways) {
+        ends.into_iter().zip(values).for_each(|(end, value)| stray.note(iso, end, value));
     }
-    for _ in 0..HALVINGS {
-        for stray in &mut *strays {
-            if let (Some(inside), Some(outside)) = (stray.inside, stray.outside) {
-                stray.position = [0, 1, 2].map(|axis| 0.5 * (inside[axis] + outside[axis]));
-            }
-        }
-        let [x, y, z] = at(strays);
-        field.gradient(region, &x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
-        for (stray, &value) in strays.iter_mut().zip(&values) {
-            stray.value = value;
-            stray.note(iso);
-        }
-    }
-    Ok((strays.len() * (ROUNDS + HALVINGS)) as u64)
+    Ok([pulls, halvings])
 }
