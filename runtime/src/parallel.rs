@@ -29,14 +29,23 @@ pub(crate) fn scatter<T>(give: impl FnOnce(&Watches) -> T) -> T {
     Watches::NONE.hold(|| give(&watches))
 }
 
-/// The longest piece of so many items of unequal weight that a thread takes without a look whether another
-/// one is idle: a sixteenth of its share. Rayon alone ends with pieces of half a share, so that one of two
-/// threads may wait for a quarter of the time.
-pub(crate) fn piece(items: usize) -> usize {
-    match thread_count() {
-        1 => items.max(1),
-        threads => (items / (16 * threads)).max(1),
-    }
+/// Items of unequal weight: a thread takes a sixteenth of its share of them without a look whether another
+/// one is idle. Rayon alone ends with pieces of half a share, so that one of two threads may wait for a
+/// quarter of the time.
+#[cfg(feature = "parallel")]
+pub(crate) fn in_pieces<I: IndexedParallelIterator>(
+    items: I,
+) -> impl IndexedParallelIterator<Item = I::Item> {
+    let most = match thread_count() {
+        1 => items.len(),
+        threads => items.len() / (16 * threads),
+    };
+    items.with_max_len(most.max(1))
+}
+
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn in_pieces<I>(items: I) -> I {
+    items
 }
 
 #[cfg(not(feature = "parallel"))]
@@ -91,10 +100,6 @@ mod serial {
     /// What rayon's iterators have beyond those of the standard library.
     pub(crate) trait ParallelIterator: Iterator + Sized {
         fn with_min_len(self, _length: usize) -> Self {
-            self
-        }
-
-        fn with_max_len(self, _length: usize) -> Self {
             self
         }
 

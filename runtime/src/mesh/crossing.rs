@@ -142,9 +142,9 @@ pub(crate) fn look(
         }
         Ok(found)
     };
-    let pieces = |groups: usize| (0..groups).into_par_iter().with_max_len(piece(groups));
-    let found: Result<Vec<FoundCells>, Cancelled> =
-        scatter(|_| pieces(groups).map_init(|| Signs::new(bricks), of_group).collect());
+    let found: Result<Vec<FoundCells>, Cancelled> = scatter(|_| {
+        in_pieces((0..groups).into_par_iter()).map_init(|| Signs::new(bricks), of_group).collect()
+    });
     let found = found?;
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
     let (mut suspects, mut cut) = (Vec::new(), Sides::default());

@@ -227,8 +227,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         };
         let groups: Vec<BoxChildren<F::Region>> = scatter(|watches| {
             let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
-            let groups = groups.with_max_len(piece(level.places.len().div_ceil(group)));
-            groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
+            in_pieces(groups).map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
         })?;
         let mut masks = Vec::with_capacity(level.places.len());
         let mut regions = Vec::with_capacity(found.into_inner());

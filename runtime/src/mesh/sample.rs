@@ -86,7 +86,7 @@ pub(crate) fn sample<F: Field>(
         progress.add(1.0 / total as f64).map_err(MeshError::from)
     };
     scatter(|watches| {
-        let groups = groups.into_par_iter().enumerate().with_max_len(piece(total));
+        let groups = in_pieces(groups.into_par_iter().enumerate());
         groups
             .try_for_each_init(BrickPoints::default, |points, group| watches.hold(|| of_group(points, group)))
     })?;

@@ -43,9 +43,8 @@ pub(crate) fn triangles<E: Send>(
         }
         Ok(marked.quads_with(all, crossings.quads[first]))
     };
-    let most = piece(groups.len());
     let found: Result<Vec<Vec<usize>>, E> = scatter(|_| {
-        let groups = groups.into_par_iter().enumerate().with_max_len(most);
+        let groups = in_pieces(groups.into_par_iter().enumerate());
         groups.map_init(|| Around::new(bricks), fill).collect()
     });
     let found = found?.concat();

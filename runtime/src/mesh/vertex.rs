@@ -72,7 +72,7 @@ pub(crate) fn finish<F: Field>(
         Ok::<_, MeshError<F::Error>>(done)
     };
     let done = scatter(|watches| {
-        let work = targets.into_par_iter().enumerate().with_max_len(piece(total));
+        let work = in_pieces(targets.into_par_iter().enumerate());
         let work =
             work.map_init(VertexBatch::default, |batch, target| watches.hold(|| finish(batch, target)));
         work.try_reduce(Done::default, |a, b| Ok(a.and(b)))

@@ -73,8 +73,7 @@ pub(super) fn find<F: Field>(
     };
     let found: Vec<ChunkFindings> = scatter(|watches| {
         let groups = places.par_chunks(group).zip(regions.par_chunks(group));
-        let groups = groups.with_max_len(piece(total));
-        groups.map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
+        in_pieces(groups).map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
     })?;
     for found in found {
         report.missed += found.missed.len() as u64;
