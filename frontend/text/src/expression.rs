@@ -380,7 +380,8 @@ impl Parser<'_> {
         let arguments: Vec<f64> = parts.iter().map(|part| part.value).collect();
         let (fewest, most) = function.arity();
         let (name, count) = (function.name(), arguments.len());
-        let value = if count < fewest || count > most {
+        let is_call = (fewest..=most).contains(&count);
+        let value = if !is_call {
             self.report(|| {
                 let plural = if fewest == 1 { "" } else { "s" };
                 Diagnostic::error(
@@ -394,7 +395,8 @@ impl Parser<'_> {
         } else {
             self.computed(function.compute(&arguments), span)
         };
-        let depends = parts.iter().any(|part| part.depends);
+        // No formula may hold what cannot be called: it is computed again, with other values.
+        let depends = is_call && parts.iter().any(|part| part.depends);
         let step = depends.then_some(Step::Call(function, count as u32));
         let begin = parts.first().map_or(stacks.steps.len() as u32, |part| part.first);
         stacks.push_result(value, span, begin, step);
