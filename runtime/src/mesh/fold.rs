@@ -15,9 +15,10 @@ use rustc_hash::FxHashMap;
 use crate::parallel::*;
 use crate::span::span;
 
+use super::area::area_vector;
 use super::brick::{Bricks, NONE, direction};
 use super::crossing::Crossings;
-use super::surface::{Around, area_vector, halves};
+use super::surface::{Around, halves};
 use super::vertex::side::SharpVertex;
 
 /// How far a vertex goes back to lay a fold flat, in cells: the first of these that leaves fewest folds. Less
@@ -36,6 +37,13 @@ pub(crate) struct SharpQuad {
     vertices: [u32; 4],
     /// For each of them that is on an edge, its place among those, and the side that the quad shows.
     sides: [Option<(u32, u8)>; 4],
+}
+
+impl SharpQuad {
+    /// Its number among all quads.
+    pub(crate) fn number(&self) -> usize {
+        self.quad as usize
+    }
 }
 
 /// A corner of a triangle that shows a side of a sharp vertex.

@@ -3,8 +3,8 @@
 use crate::boxes::Box3;
 use crate::parallel::*;
 
+use super::area::area_vector;
 use super::indexed::Mesh;
-use super::surface::area_vector;
 
 /// Triangles or vertices that a thread takes at a time. Sums over triangles are sums of these parts' sums,
 /// for any number of threads.

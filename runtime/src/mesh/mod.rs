@@ -38,6 +38,7 @@
 //! to the bit for every thread count and every brick size: cells are in Morton order, in which bricks of any
 //! power of two follow one after the other.
 
+mod area;
 mod block;
 mod brick;
 mod cell;
@@ -46,6 +47,7 @@ mod components;
 mod crease;
 mod crossing;
 mod divide;
+mod doubtful;
 mod error;
 mod field;
 mod fill;
@@ -80,18 +82,18 @@ pub use report::{MAX_NEAR, MeshReport, Sides, ThinReport};
 #[cfg(feature = "simplify")]
 pub use simplify::Simplify;
 
-pub(crate) use block::{busy, extract as extract_block};
 #[cfg(feature = "export")]
-pub(crate) use surface::{area_vector, unit};
+pub(crate) use area::{area_vector, unit};
+pub(crate) use block::{busy, extract as extract_block};
 
 use crate::job::{Hook, Job};
 use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
 use divide::{BrickDivision, BrickLimits};
+use doubtful::VertexSet;
 use fold::{SharpQuad, SideCorner};
 use scope::DivisionScope;
-use surface::VertexSet;
 use vertex::batch::VertexSource;
 use vertex::side::SharpVertex;
 
@@ -227,11 +229,12 @@ fn polygonize<F: Field>(
     let (of, go_on) = ((bricks, &crossings), || progress.breathe());
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
-    let doubtful = VertexSet::new(count, &done.doubtful);
-    let around;
+    let doubtful = VertexSet::new(0, count, done.doubtful.iter().copied());
+    let mut around;
     (mesh.triangles, around) = surface::triangles(bricks, &crossings, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
-    surface::repair_normals(&mut mesh, &around, &done.doubtful, progress)?;
+    let anew = quads.iter().map(SharpQuad::number);
+    doubtful::repair_normals(&mut mesh, &doubtful, &mut around, anew, progress)?;
     Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
 }

@@ -5,23 +5,22 @@
 //! each low side, filled from those bricks.
 
 use crate::parallel::*;
-use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
+use super::doubtful::{DoubtfulQuad, VertexSet};
 use super::fill::{FilledVector, VectorPart};
-use super::indexed::Mesh;
 
-/// The triangles of all quads, in the order of the cells that own them, and which quads have one of some
-/// vertices. It asks at times whether to go on.
+/// The triangles of all quads, in the order of the cells that own them, and the quads at doubtful vertices,
+/// ascending. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
     bricks: &Bricks,
     crossings: &Crossings,
-    (positions, marked): (&[[f32; 3]], &VertexSet),
+    (positions, doubtful): (&[[f32; 3]], &VertexSet),
     go_on: impl Fn() -> Result<(), E> + Sync,
-) -> Result<(Vec<[u32; 3]>, Vec<usize>), E> {
+) -> Result<(Vec<[u32; 3]>, Vec<DoubtfulQuad>), E> {
     span!("triangles");
     let group = bricks.group();
     let mut triangles = FilledVector::new(2 * crossings.quad_count());
@@ -41,45 +40,14 @@ pub(crate) fn triangles<E: Send>(
             around.fill(bricks, crossings, brick);
             split_quads(around, positions, pairs);
         }
-        Ok(marked.quads_with(all, crossings.quads[first]))
+        Ok(doubtful.quads(all, crossings.quads[first], positions))
     };
-    let found: Result<Vec<Vec<usize>>, E> = scatter(|_| {
+    let found: Result<Vec<Vec<DoubtfulQuad>>, E> = scatter(|_| {
         let groups = in_pieces(groups.into_par_iter().enumerate());
         groups.map_init(|| Around::new(bricks), fill).collect()
     });
-    let found = found?.concat();
+    let found = found?.into_iter().flatten().collect();
     Ok((triangles.finish(), found))
-}
-
-/// A set of vertices that is asked at each quad: a byte for each vertex, if any is in it.
-pub(crate) struct VertexSet {
-    marks: Vec<u8>,
-}
-
-impl VertexSet {
-    /// No vertex.
-    pub(crate) const NONE: Self = Self { marks: Vec::new() };
-
-    /// Some vertices, of this many.
-    pub(crate) fn new(count: usize, vertices: &[u32]) -> Self {
-        if vertices.is_empty() {
-            return Self::NONE;
-        }
-        let mut marks = vec![0; count];
-        vertices.iter().for_each(|&vertex| marks[vertex as usize] = 1);
-        Self { marks }
-    }
-
-    /// Which of these quads, counted from the first one, have a vertex of the set.
-    fn quads_with(&self, pairs: &[[[u32; 3]; 2]], first: usize) -> Vec<usize> {
-        if self.marks.is_empty() {
-            return Vec::new();
-        }
-        let mark = |vertex: u32| self.marks[vertex as usize];
-        // Whatever the diagonal is, these are the four corners: see `halves`.
-        let has_any = |[[q, r, _], [_, s, p]]: &[[u32; 3]; 2]| mark(*p) | mark(*q) | mark(*r) | mark(*s) == 1;
-        (first..).zip(pairs).filter(|(_, pair)| has_any(pair)).map(|(quad, _)| quad).collect()
-    }
 }
 
 /// A crossed cell: its first vertex, and the sheets of its edges.
@@ -273,106 +241,6 @@ pub(super) fn halves([p, q, r, s]: [u32; 4], at: impl Fn(u32) -> [f32; 3]) -> [[
     // half of the time.
     let (d, e) = if distance(p, r) <= distance(q, s) { (p, r) } else { (s, q) };
     [[q, r, d], [e, s, p]]
-}
-
-/// Repairs the normals of some vertices by their triangles, which the quads have that are given in ascending
-/// order: see [`judged`].
-pub(crate) fn repair_normals(
-    mesh: &mut Mesh,
-    quads: &[usize],
-    vertices: &[u32],
-    progress: &Progress<'_>,
-) -> Result<(), Cancelled> {
-    span!("normals");
-    if vertices.is_empty() {
-        return Ok(());
-    }
-    let Mesh { positions, normals, triangles, .. } = mesh;
-    let mut doubtful = DoubtfulNormals::new(0, normals.len(), vertices.iter().copied());
-    for some in quads.chunks(QUADS_AT_ONCE) {
-        progress.breathe()?;
-        some.iter().for_each(|&quad| doubtful.add(&triangles[2 * quad..2 * quad + 2], positions));
-    }
-    for (&vertex, &sum) in vertices.iter().zip(doubtful.sums()) {
-        let normal = &mut normals[vertex as usize];
-        *normal = judged(*normal, sum);
-    }
-    Ok(())
-}
-
-/// Quads whose areas take less than a millisecond.
-const QUADS_AT_ONCE: usize = 1 << 13;
-
-/// The areas of the triangles of some vertices.
-pub(crate) struct DoubtfulNormals {
-    /// The first vertex that may be among them.
-    first: u32,
-    /// For each vertex from there on, its place among them plus one; 0 for all others.
-    places: Vec<u32>,
-    /// For each of them, the sum of the area vectors of its triangles.
-    sums: Vec<[f64; 3]>,
-}
-
-impl DoubtfulNormals {
-    /// Without triangles: vertices of a range that begins at `first`, counted from there.
-    pub(crate) fn new(first: u32, count: usize, vertices: impl Iterator<Item = u32>) -> Self {
-        let (mut places, mut sums) = (vec![0_u32; count], Vec::new());
-        for vertex in vertices {
-            sums.push([0.0_f64; 3]);
-            places[vertex as usize] = sums.len() as u32;
-        }
-        Self { first, places, sums }
-    }
-
-    /// Adds triangles. The order counts: sums of the same areas in another order are rounded otherwise.
-    pub(crate) fn add(&mut self, triangles: &[[u32; 3]], positions: &[[f32; 3]]) {
-        let place =
-            |vertex: u32| self.places.get(vertex.wrapping_sub(self.first) as usize).copied().unwrap_or(0);
-        for triangle in triangles {
-            let wanted = triangle.map(place);
-            if wanted == [0; 3] {
-                continue;
-            }
-            let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));
-            for place in wanted.into_iter().filter(|&place| place > 0) {
-                self.sums[place as usize - 1].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
-            }
-        }
-    }
-
-    /// The sums, in the order of the vertices.
-    pub(crate) fn sums(&self) -> &[[f64; 3]] {
-        &self.sums
-    }
-}
-
-/// The normal of a doubtful vertex, from its first one and the sum of the area vectors of its triangles. A
-/// vertex without a normal (its gradient vanishes or is NaN) gets the area-weighted mean of its triangles'
-/// normals; or up, if they have no area. So does a vertex whose normal is more than 90 degrees off: where two
-/// surfaces are closer than a cell, the gradient may be the other surface's.
-pub(crate) fn judged(normal: [f32; 3], sum: [f64; 3]) -> [f32; 3] {
-    let along: f64 = (0..3).map(|axis| f64::from(normal[axis]) * sum[axis]).sum();
-    if normal == [0.0; 3] {
-        unit(sum).unwrap_or([0.0, 0.0, 1.0])
-    } else if along < 0.0 {
-        unit(sum).unwrap_or(normal)
-    } else {
-        normal
-    }
-}
-
-/// The area vector of a triangle, along its normal and as long as twice its area.
-pub(crate) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
-    let [p, q, r] = corners;
-    let from = |end: [f32; 3], axis: usize| f64::from(end[axis]) - f64::from(p[axis]);
-    let [u, v] = [[from(q, 0), from(q, 1), from(q, 2)], [from(r, 0), from(r, 1), from(r, 2)]];
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-}
-
-/// A vector divided by its length; `None` if the length is 0 or not finite.
-pub(crate) fn unit(vector: [f64; 3]) -> Option<[f32; 3]> {
-    let length = vector.iter().map(|c| c * c).sum::<f64>().sqrt();
-    (length > 0.0 && length.is_finite()).then(|| vector.map(|c| (c / length) as f32))
 }
 
 // The numbers of the edges above are those of the cell's table.

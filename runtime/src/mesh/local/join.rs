@@ -5,8 +5,10 @@ use std::convert::Infallible;
 use rustc_hash::FxHashSet;
 
 use super::bricks::{BrickCorner, BrickMesh, BrickPlace, KeptBrick, linked, octet};
+use crate::mesh::area::area_vector;
 use crate::mesh::brick::{Bricks, place as number_place};
 use crate::mesh::crossing::Crossings;
+use crate::mesh::doubtful::{AreaSums, VertexSet, judged};
 use crate::mesh::fold;
 use crate::mesh::report::Sides;
 use crate::mesh::surface;
@@ -116,7 +118,7 @@ impl BrickMesh {
         let JoinedBricks { bricks, crossings, names, sharp, homes } = self.gathered(join);
         let positions: Vec<[f32; 3]> =
             names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
-        let marked = &surface::VertexSet::NONE;
+        let marked = &VertexSet::NONE;
         let Ok((mut triangles, _)) = surface::triangles(&bricks, &crossings, (&positions, marked), always);
         let Ok(quads) = fold::sharp_quads((&bricks, &crossings), &sharp, [0; 3], always);
         let Ok(corners) = fold::crease(&quads, &sharp, &positions, &mut triangles, always);
@@ -144,24 +146,24 @@ impl BrickMesh {
             return false;
         };
         let vertices = brick.vertices.range();
-        let mut judged = surface::DoubtfulNormals::new(
-            vertices.start as u32,
-            vertices.len(),
-            brick.doubtful.iter().map(|&(vertex, _)| vertex),
-        );
+        let doubtful = brick.doubtful.iter().map(|&(vertex, _)| vertex);
+        let doubtful = VertexSet::new(vertices.start as u32, vertices.len(), doubtful);
+        let mut sums = AreaSums::new(&doubtful);
         let reached = brick.reached_above(self.edge);
         let above = octet(place, 1)
             .enumerate()
             .filter(|(axes, place)| reached >> axes & 1 == 1 && self.bricks.contains_key(place));
         let above: Vec<BrickPlace> = above.map(|(_, place)| place).collect();
         for (_, place) in self.in_order(above.into_iter()) {
-            let triangles = &self.buffers.triangles[self.bricks[&place].triangles.range()];
-            judged.add(triangles, &self.buffers.positions);
+            for triangle in &self.buffers.triangles[self.bricks[&place].triangles.range()] {
+                let corner = |vertex: u32| self.buffers.positions[vertex as usize];
+                sums.add(triangle, || area_vector(triangle.map(corner)));
+            }
         }
         let mut changed = false;
-        for (&(vertex, first), sum) in brick.doubtful.iter().zip(judged.sums()) {
+        for (&(vertex, first), sum) in brick.doubtful.iter().zip(sums.get()) {
             let normal = &mut self.buffers.normals[vertices.start + vertex as usize];
-            let now = surface::judged(first, *sum);
+            let now = judged(first, *sum);
             changed |= now.map(f32::to_bits) != normal.map(f32::to_bits);
             *normal = now;
         }

@@ -4,8 +4,8 @@
 
 use std::ops::RangeInclusive;
 
+use super::super::area::unit;
 use super::super::pull::{LANES, VertexLanes, all, squares};
-use super::super::surface::unit;
 
 /// Unit vectors away from the inside, or zero where the gradient vanishes or is NaN.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! A vertex that may be on an edge, with its crossings by their sides.
 
+use super::super::super::area::unit;
 use super::super::super::brick::Bricks;
-use super::super::super::surface::unit;
 use super::super::sheet::{Sheet, Start};
 use super::super::side::SharpSide;
 use super::crossing::{Crossing, SHARP, dot};

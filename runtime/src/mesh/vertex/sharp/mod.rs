@@ -35,9 +35,9 @@ mod probe;
 mod quadric;
 mod refine;
 
+use super::super::area::unit;
 use super::super::cell;
 use super::super::field::Field;
-use super::super::surface::unit;
 use super::batch::{Done, VertexBatch, VertexSource};
 use super::sheet::{Sheet, Start};
 use super::side::{CutVertex, SharpVertex};
