@@ -445,77 +445,16 @@ mod tests {
     use std::convert::Infallible;
 
     use super::*;
-    use crate::boxes::Divisible;
-    use crate::mesh::FieldWork;
+    use crate::mesh::testing::PlainField;
     use crate::progress::EACH;
 
-    /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is
-    /// evaluated.
-    struct Ball;
+    /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes.
+    const BALL: PlainField = PlainField { value: |p| -p.map(|c| c * c).iter().sum::<f32>(), range: range_of };
 
-    impl Divisible for Ball {
-        type Error = Infallible;
-        type Region = ();
-
-        fn region(&self, _: Box3) -> Result<(), Infallible> {
-            Ok(())
-        }
-
-        fn ranges(&self, (): &(), boxes: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), Infallible> {
-            for (range, Box3 { low, high }) in ranges.iter_mut().zip(boxes) {
-                let square =
-                    |of: fn(f32, f32) -> f32| (0..3).map(|a| of(low[a], high[a]).powi(2)).sum::<f32>();
-                *range = [
-                    -square(|low, high| low.abs().max(high.abs())),
-                    -square(|low, high| low.max(-high).max(0.0)),
-                ];
-            }
-            Ok(())
-        }
-
-        fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), Infallible> {
-            parts.resize(parts.len() + boxes.len(), ());
-            Ok(())
-        }
-    }
-
-    impl Field for Ball {
-        fn attributes(&self) -> Vec<(String, usize)> {
-            Vec::new()
-        }
-
-        fn work(&self, (): &()) -> FieldWork {
-            FieldWork::default()
-        }
-
-        fn field(&self, (): &(), _: &[f32], _: &[f32], _: &[f32], _: &mut [f32]) -> Result<(), Infallible> {
-            Ok(())
-        }
-
-        fn gradient(
-            &self,
-            (): &(),
-            _: &[f32],
-            _: &[f32],
-            _: &[f32],
-            _: &mut [f32],
-            _: [&mut [f32]; 3],
-        ) -> Result<(), Infallible> {
-            Ok(())
-        }
-
-        fn all(
-            &self,
-            (): &(),
-            _: &[f32],
-            _: &[f32],
-            _: &[f32],
-            _: &mut [f32],
-            _: [&mut [f32]; 3],
-            _: &mut [&mut [f32]],
-        ) -> Result<(), Infallible> {
-            Ok(())
-        }
+    fn range_of(Box3 { low, high }: &Box3) -> [f32; 2] {
+        let square = |of: fn(f32, f32) -> f32| (0..3).map(|a| of(low[a], high[a]).powi(2)).sum::<f32>();
+        let most = -square(|low, high| low.max(-high).max(0.0));
+        [-square(|low, high| low.abs().max(high.abs())), most]
     }
 
     /// Divides a lattice with so many cells along each axis, from -3 on, into bricks of 2^3 cells of 1/8.
@@ -524,7 +463,7 @@ mod tests {
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
         let limits = BrickLimits { count: limit, ..BrickLimits::PIECES };
         divide(
-            &Ball,
+            &BALL,
             axes,
             (&options, DivisionScope::Everything),
             limits,
@@ -552,10 +491,8 @@ mod tests {
         let mut expected = Vec::new();
         for (x, y, z) in (0..24).flat_map(|x| (0..16).flat_map(move |y| (0..20).map(move |z| (x, y, z)))) {
             let first = [x, y, z].map(|index| 2 * index);
-            let mut range = [[0.0; 2]];
-            let Ok(()) =
-                Ball.ranges(&(), &[box_of(&bricks.axes, first, first.map(|index| index + 2))], &mut range);
-            if range[0][0] < -4.0 && range[0][1] >= -4.0 {
+            let [low, high] = range_of(&box_of(&bricks.axes, first, first.map(|index| index + 2)));
+            if low < -4.0 && high >= -4.0 {
                 expected.push([x, y, z].map(|index| index as u32));
             }
         }

@@ -66,6 +66,8 @@ mod scope;
 mod simplify;
 mod stage;
 mod surface;
+#[cfg(test)]
+mod testing;
 mod thin;
 mod vertex;
 

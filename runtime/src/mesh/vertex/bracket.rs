@@ -417,3 +417,40 @@ impl CrossedEdges {
         Ok(asked)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::testing::PlainField;
+
+    /// Few brackets are halved three times with one question, many once with each. Both keep the same half
+    /// each time, so that a bracket does not depend on how many there are beside it.
+    #[test]
+    fn halvings_at_once_are_those_in_turn() {
+        let value = |[x, y, z]: [f32; 3]| (3.0 * x).sin() + 0.3 * y * z - if y > 0.4 { 0.5 } else { 0.0 };
+        let field = PlainField { value, range: |_| [f32::NEG_INFINITY, f32::INFINITY] };
+        let mut random = fastrand::Rng::with_seed(1);
+        let brackets: Vec<Bracket> = std::iter::repeat_with(|| {
+            let ends = [0; 2].map(|_| [0; 3].map(|_| 2.0 * random.f32() - 1.0));
+            Bracket { ends, values: ends.map(value) }
+        })
+        .filter(|bracket| bracket.values[0] < 0.1 && bracket.values[1] >= 0.1)
+        .take(FEW_BRACKETS * 40)
+        .collect();
+        for times in [1, 2, 3, 6, 7, 12] {
+            let [mut few, mut many] = [0; 2].map(|_| brackets.clone());
+            let mut points = BracketPoints::default();
+            let mut halve = |some: &mut [Bracket]| points.halve(&field, &(), 0.1, some, times).unwrap();
+            let asked: u64 = few.chunks_mut(FEW_BRACKETS).map(&mut halve).sum();
+            assert!(halve(&mut many) <= asked, "{times}");
+            let bits = |all: &[Bracket]| -> Vec<[u32; 8]> {
+                let of = |one: &Bracket| [one.ends.as_flattened(), &one.values].concat();
+                let bits = |numbers: Vec<f32>| std::array::from_fn(|n| numbers[n].to_bits());
+                all.iter().map(|one| bits(of(one))).collect()
+            };
+            assert_eq!(bits(&few), bits(&many), "{times}");
+            let is_kept = |one: &Bracket| one.values == one.ends.map(value) && one.width() > 0.0;
+            assert!(few.iter().all(is_kept), "{times}");
+        }
+    }
+}
