@@ -120,6 +120,9 @@ pub(crate) fn repair_normals(
     progress: &Progress<'_>,
 ) -> Result<(), Cancelled> {
     span!("normals");
+    if vertices.is_empty() {
+        return Ok(());
+    }
     let Mesh { positions, normals, triangles, .. } = mesh;
     let mut rest = &mut *quads;
     for quad in anew {

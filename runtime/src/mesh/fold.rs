@@ -39,13 +39,6 @@ pub(crate) struct SharpQuad {
     sides: [Option<(u32, u8)>; 4],
 }
 
-impl SharpQuad {
-    /// Its number among all quads.
-    pub(crate) fn number(&self) -> usize {
-        self.quad as usize
-    }
-}
-
 /// A corner of a triangle that shows a side of a sharp vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct SideCorner {
@@ -57,8 +50,9 @@ pub(crate) struct SideCorner {
     pub(crate) side: usize,
 }
 
-/// The quads at sharp vertices, which are ascending, of last cells from `first` on in all directions. Bricks
-/// that have such quads know their neighbours below. Every now and then it is asked whether to go on.
+/// The quads at sharp vertices, which are ascending, of last cells from `first` on in all directions; in
+/// ascending order, too. Bricks that have such quads know their neighbours below. Every now and then it is
+/// asked whether to go on.
 pub(crate) fn sharp_quads<E: Send>(
     (bricks, crossings): (&Bricks, &Crossings),
     sharp: &[SharpVertex],
@@ -122,6 +116,11 @@ pub(crate) fn sharp_quads<E: Send>(
 }
 
 impl SharpQuad {
+    /// Its number among all quads.
+    pub(crate) fn number(&self) -> usize {
+        self.quad as usize
+    }
+
     /// Its halves: along the edge of the surface, if two opposite corners are on it, else along the shorter
     /// diagonal; but along the other one if fewer of them are folded then. Also the number of folded ones.
     fn least_folded(
