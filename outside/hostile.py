@@ -6,7 +6,8 @@ of the tests cut off at each twentieth. Each is a process of its own: `jbt check
 one point, which compiles.
 
 * The exit code is 0, or 1 with a place (line and column, or a byte), or 3 with the limit in words.
-* A process takes a second of a processor and 200 MB at most.
+* A process takes a second of a processor and 200 MB at most. One that takes longer runs twice more, and its least time
+  counts: what else runs on a machine makes a process slower, and none faster.
 
     outside/hostile.py [JBT] [--only FORMAT] [--all]
 
@@ -27,7 +28,7 @@ import tempfile
 import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SECONDS, MEGABYTES = 1.0, 200
+SECONDS, MEGABYTES, RUNS = 1.0, 200, 3
 # Files that are cut off, and folders of them. Samples of other programs are no part of the project, and may not be there.
 SAMPLES = os.environ.get("JBT_SAMPLES", "../shared/samples")
 WHOLE = ["examples/foreign", "frontend/text/tests/readers/files", "fuzz/seeds", "examples/hero.jbt", "examples/goblet.jbt"]
@@ -486,7 +487,11 @@ def main():
                 options = ["--radius", "1"] if form in SIZED or form in UNSIZED and b"radius" not in content else []
                 asked = [["check"], ["eval", "--points", "points.csv", "-o", "-"]]
                 for command in asked:
-                    code, message, seconds, memory = launcher.submit(took, [jbt, *command, *options, f"f.{form}"], folder).result()
+                    process = [jbt, *command, *options, f"f.{form}"]
+                    code, message, seconds, memory = launcher.submit(took, process, folder).result()
+                    for _ in range(1, RUNS):
+                        if seconds > SECONDS:
+                            seconds = min(seconds, launcher.submit(took, process, folder).result()[2])
                     fault = faults(code, message)
                     if seconds > SECONDS or memory > MEGABYTES:
                         fault = fault or f"{seconds:.2f} s, {memory:.0f} MB"

@@ -241,3 +241,20 @@ fn tasks_that_a_model_is_too_large_for_are_known_in_advance() {
     assert!(Sampler::of(&compiled, Query::FIELD).is_err_and(|error| error.kind() == ErrorKind::Limit));
     assert!(Evaluator::compile(compiled.tree(), Query::FIELD).is_ok());
 }
+
+#[test]
+fn programs_that_are_too_large_are_told_apart() {
+    let queries = Query::EVERY.map(Task::Points);
+    let mut told = Vec::new();
+    // Programs that have half of their length to spare, and those of which the field alone fits.
+    for count in [4_000, 20_000] {
+        let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree(&sines(count)));
+        let refused = compiled.too_large_for(&queries).expect("it can be lowered");
+        for query in [Query::FIELD, Query::ALL] {
+            let foreseen = refused.iter().any(|(task, _)| *task == Task::Points(query));
+            assert_eq!(compiled.evaluator(query).is_err(), foreseen, "{count} sines, {query:?}");
+        }
+        told.push(refused.len());
+    }
+    assert!(told[0] == 0 && (1..queries.len()).contains(&told[1]), "{told:?}");
+}

@@ -71,13 +71,18 @@ impl Compiled {
             if longest.function.values.len() <= MAX_VALUES / LARGEST_GROWTH / RANGES_GROWTH {
                 return Ok(Vec::new());
             }
-            drop(longest);
             let mut looked: Vec<(Purpose, Option<CompileError>)> = Vec::new();
             let mut refused = Vec::new();
-            // Whatever is done with a model takes its field, so none of the others fits if that does not.
-            let field = Need::Answers(PointScope::Anywhere, Query::FIELD);
-            if let Some(error) = self.beyond(&lowering, field, Purpose::Answers(Query::FIELD))? {
-                return Ok(tasks.iter().map(|&task| (task, error.clone())).collect());
+            // A program for some answers is about as long as a part of that for all.
+            let all = grown(longest.function, Purpose::Answers(Query::ALL));
+            if all.is_ok_and(|function| function.values.len() <= MAX_VALUES / 2) {
+                looked.extend(Query::EVERY.map(|query| (Purpose::Answers(query), None)));
+            } else {
+                // Whatever is done with a model takes its field, so none of the others fits if that does not.
+                let field = Need::Answers(PointScope::Anywhere, Query::FIELD);
+                if let Some(error) = self.beyond(&lowering, field, Purpose::Answers(Query::FIELD))? {
+                    return Ok(tasks.iter().map(|&task| (task, error.clone())).collect());
+                }
             }
             for &task in tasks {
                 for need in task.needs() {
