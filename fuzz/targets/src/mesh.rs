@@ -6,12 +6,16 @@ use jbt::{
 };
 
 use crate::engines::text;
-use crate::model::{quick_engine, rng, small_tree};
+use crate::model::{ops_per_point, quick_engine, rng, small_tree};
 
 /// Cells along the longest side, at most.
 const MAX_RESOLUTION: usize = 28;
 /// Uses of leaves times cells along two sides, at most: one input takes a second.
 const MAX_WORK: f64 = 6e3;
+/// Ops of the field, times points, that the scalar engine is asked for: it does some 30 million a second.
+const MAX_SCALAR_OPS: u64 = 50_000_000;
+/// How many times as long a gradient takes as the field.
+const GRADIENT: u64 = 4;
 
 /// Meshes the model that bytes mean, in its own box or in one that may cut it.
 pub(crate) fn run(bytes: &[u8]) {
@@ -40,6 +44,13 @@ pub(crate) fn run(bytes: &[u8]) {
         assert!(made.report.closed && is_closed(vertices, triangles), "it is open\n{}", text(bytes));
         assert_eq!(check_manifold(vertices, triangles), Ok(()), "{}", text(bytes));
     }
+    // A curve is one use of a leaf, and may have as many ops as a hundred others.
+    let report = &made.report;
+    let points = report.field_evaluations
+        + report.jump_evaluations
+        + GRADIENT * (report.gradient_evaluations + report.full_evaluations);
+    let is_long = engine == Engine::Scalar && points.saturating_mul(ops_per_point(&tree)) > MAX_SCALAR_OPS;
+    let engine = if is_long { Engine::Lanes } else { engine };
     if let Some(other) = mesh(&polygonize, engine, &tree) {
         assert!(bits(&made) == bits(&other), "another mesh by {}\n{}", engine.name(), text(bytes));
     }

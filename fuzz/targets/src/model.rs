@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use jbt::text::{Options, parse};
-use jbt::{CheckedTree, Engine, Model};
+use jbt::{CheckedTree, Compiler, Engine, Model, Pruner, Query};
 use jbt_testkit::random::{Numbers, Random, Settings};
 
 /// Up to so many bytes are seeds. No text of a model is as short.
@@ -43,6 +43,14 @@ pub(crate) fn quick_engine(rng: &mut Rng, tree: &CheckedTree, engines: &[Engine]
     let quick: Vec<Engine> =
         engines.iter().copied().filter(|&engine| is_small || engine != Engine::Scalar).collect();
     quick[rng.usize(0..quick.len())]
+}
+
+/// The ops of the field at one point, with all rows; `u64::MAX` if the model is too large to be compiled.
+pub(crate) fn ops_per_point(tree: &CheckedTree) -> u64 {
+    let compiler = Compiler::for_engine(Engine::Scalar);
+    let field = compiler.compile(tree).evaluator(Query::FIELD);
+    let both = field.ok().zip(Pruner::new(&compiler, tree).ok());
+    both.map_or(u64::MAX, |(field, pruner)| field.ops_in(&pruner.everywhere()))
 }
 
 /// Random numbers that are always the same for the same bytes.
