@@ -18,7 +18,7 @@ mod group;
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain, FunctionBuilder, InstKind, Origin, Value};
+use jbt_ir::{Domain, FunctionBuilder, InstKind, Origin, Rule, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
@@ -84,6 +84,13 @@ impl Operator {
     pub(super) fn only_chooses(&self) -> bool {
         let chooses = matches!(self.code, ReduceCode::Choice(_));
         chooses && !self.moving && self.mixing.is_empty()
+    }
+
+    /// Whether its field must not move where it is 0. There all operands but one that is zero may be left
+    /// out, and another one may be 0 and yet move: a field that is too small for a number has a slope that
+    /// is not.
+    fn stands_still_at_zero(&self) -> bool {
+        self.moving && !self.weighs() && self.code.rule(self.non_negative) == Rule::OnlyZero
     }
 
     /// The contest of these operands, if one of them wins.
@@ -306,6 +313,7 @@ impl State {
                 (self.field[0], seen, seen)
             }
         };
+        let field = if operator.stands_still_at_zero() { still_at_zero(d, field) } else { field };
         let groups = self.groups.iter().zip(defaults).map(|(state, default)| {
             if operator.weighs() {
                 state.normalised(d, (total, seen), default)
@@ -316,6 +324,14 @@ impl State {
         });
         Answer::new(field, groups.collect())
     }
+}
+
+/// The field, to the bit, without a slope where it is not positive.
+fn still_at_zero(d: &mut FunctionBuilder, field: Value) -> Value {
+    let zero = d.constant(0.0);
+    let is_positive = d.lt(zero, field);
+    let still = d.stop_gradient(field);
+    d.select(is_positive, field, still)
 }
 
 /// The attributes of operands by these weights, none of which is negative.
