@@ -68,7 +68,7 @@ pub enum Rule {
     KeepOne,
     /// If a row is zero, all other rows of the same parent row may be left out, zero or not; one zero row
     /// stays. Rows of intersections without negative operands, of products and of Ricci blends with negative
-    /// exponents.
+    /// exponents: where these are 0, they have no slope, even if one that is left out has one.
     OnlyZero,
     /// A zero row may not be left out: the scene, guards that do not start at 0, points inside of warps,
     /// R-functions, rows that may answer for the whole model, and pieces that count everywhere.

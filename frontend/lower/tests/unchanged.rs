@@ -4,8 +4,8 @@
 //! `golden/unchanged/examples.txt` has a line for each example: the values of its programs, as they are
 //! lowered and after all passes, for the field, with the gradient, with attributes, with everything. A number
 //! that grows there says that a feature is paid for by models without it. They are those of the commit
-//! feb690b1, before names, parts, styles and directions were there; but for `castle`, which is younger, and
-//! two values of `machine` that passes take out again.
+//! feb690b1, before names, parts, styles and directions were there; but for `castle`, which is younger, two
+//! values of `machine` that passes take out again, and gradients of intersections, which stand still at 0.
 
 use std::fmt::Write as _;
 
