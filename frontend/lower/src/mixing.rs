@@ -90,7 +90,12 @@ impl Operator {
     /// out, and another one may be 0 and yet move: a field that is too small for a number has a slope that
     /// is not.
     fn stands_still_at_zero(&self) -> bool {
-        self.moving && !self.weighs() && self.code.rule(self.non_negative) == Rule::OnlyZero
+        self.moving && !self.weighs() && self.rule() == Rule::OnlyZero
+    }
+
+    /// What may be done with operands that are rows and zero.
+    pub(super) fn rule(&self) -> Rule {
+        self.code.rule(self.non_negative)
     }
 
     /// The contest of these operands, if one of them wins.

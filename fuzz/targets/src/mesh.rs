@@ -12,7 +12,7 @@ use crate::model::{ops_per_point, quick_engine, rng, small_tree};
 const MAX_RESOLUTION: usize = 28;
 /// Uses of leaves times cells along two sides, at most: one input takes a second.
 const MAX_WORK: f64 = 6e3;
-/// Ops of the field, times points, that the scalar engine is asked for: it does some 30 million a second.
+/// Ops of the field, times points, that the scalar engine is asked for: it does some 60 million a second.
 const MAX_SCALAR_OPS: u64 = 50_000_000;
 /// How many times as long a gradient takes as the field.
 const GRADIENT: u64 = 4;

@@ -75,9 +75,10 @@ impl Compiled {
             let mut refused = Vec::new();
             // A program for some answers is about as long as a part of that for all.
             let all = grown(longest.function, Purpose::Answers(Query::ALL));
-            if all.is_ok_and(|function| function.values.len() <= MAX_VALUES / 2) {
+            if all.as_ref().is_ok_and(|function| function.values.len() <= MAX_VALUES / 2) {
                 looked.extend(Query::EVERY.map(|query| (Purpose::Answers(query), None)));
             } else {
+                looked.push((Purpose::Answers(Query::ALL), all.err().map(|error| self.placed(error))));
                 // Whatever is done with a model takes its field, so none of the others fits if that does not.
                 let field = Need::Answers(PointScope::Anywhere, Query::FIELD);
                 if let Some(error) = self.beyond(&lowering, field, Purpose::Answers(Query::FIELD))? {

@@ -435,3 +435,36 @@ fn operands_that_do_not_decide_are_the_same_for_any_number_of_boxes() {
         }
     }
 }
+
+/// Near the edge of what a weak operand reaches, its field is too small for a number while its slope is not.
+/// Another one that is 0 there decides an intersection, whichever of them comes first.
+#[test]
+fn an_intersection_that_is_zero_has_no_slope() {
+    let weak = "point { radius 1 falloff wyvill strength 1e-37 }";
+    let near = "point { at (0 5 0) radius 1 }";
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let gradients = |text: &str| {
+        let model = model(&format!("jbt 1 sum {{ {text} }}"));
+        let tree = model.check().expect("it is a good model");
+        let evaluator = compiler.evaluator(&tree, Query::GRADIENT).expect("it compiles");
+        let pruner = Pruner::new(&compiler, &tree).expect("it compiles");
+        let mut points = evaluator.points();
+        points.extend((0..2000).map(|step| [0.99 + 1e-5 * step as f32, 0.0, 0.0]));
+        let region = pruner.region(Box3::new([0.99, 0.0, 0.0], [1.01, 0.0, 0.0])).expect("the box is proper");
+        compare(text, &model, &evaluator, &region, &points);
+        let answers = answers(&evaluator, &points);
+        (answers.field().to_vec(), answers.planes()[1].clone())
+    };
+    let (fields, slopes) = gradients(weak);
+    let steep = fields.iter().zip(&slopes).filter(|(field, slope)| **field == 0.0 && **slope != 0.0).count();
+    assert!(steep > 0, "no field is too small for a number");
+    for operator in ["intersection", "smooth_intersection 0.4", "product", "blend ricci -4"] {
+        for operands in [[weak, near], [near, weak], [weak, weak]] {
+            let text = format!("{operator} {{ {} }}", operands.join(" "));
+            let (fields, slopes) = gradients(&text);
+            for (field, slope) in fields.iter().zip(&slopes) {
+                assert!(*field != 0.0 || *slope == 0.0, "{text}: {slope:e}");
+            }
+        }
+    }
+}

@@ -109,7 +109,7 @@ impl Emitter<'_> {
         let extreme = self.decides_rows(reduce.operator.code, self.first(owned).instance());
         let mut initial = reduce.state.values();
         initial.extend(extreme.map(|extreme| self.builder.constant(beyond(extreme, false))));
-        let rule = reduce.operator.code.rule(reduce.operator.non_negative);
+        let rule = reduce.operator.rule();
         let mut params = self.open_fold(owned, (FoldKind::Rows, rule), &initial);
         reduce.extreme =
             extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
