@@ -25,7 +25,9 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
+
+use smallvec::{SmallVec, smallvec};
 
 use crate::entity::{Entity, Table};
 use crate::function::Function;
@@ -66,16 +68,29 @@ impl RowSpan {
     const ABSENT: Self = Self { starts: 0, active: 1, end: 1 };
 }
 
+/// Tables up to which a selection has its lists of tables in itself. There is one for each brick of a mesh,
+/// and most models have few tables.
+const FEW_TABLES: usize = 4;
+
 /// The active rows of every table. See the module.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Selection {
     extent: Arc<Extent>,
     /// A zero; then for each table that is present its starts, then its active rows.
     words: Vec<u32>,
     /// By table.
-    spans: Vec<RowSpan>,
+    spans: SmallVec<[RowSpan; FEW_TABLES]>,
     /// The tables that are present, ascending.
-    present: Vec<Table>,
+    present: SmallVec<[Table; FEW_TABLES]>,
+}
+
+impl Default for Selection {
+    /// No row of no table. It allocates nothing.
+    fn default() -> Self {
+        static NOTHING: LazyLock<Arc<Extent>> = LazyLock::new(Arc::default);
+        let extent = Arc::clone(&NOTHING);
+        Self { extent, words: Vec::new(), spans: SmallVec::new(), present: SmallVec::new() }
+    }
 }
 
 /// Rows of a table whose indices have moved; what stands in their columns stays.
@@ -249,7 +264,7 @@ impl Selection {
             part.present.reserve_exact(self.present.len());
         }
         // Where the masks of each table that is present begin.
-        let mut firsts = vec![0; self.spans.len()];
+        let mut firsts: SmallVec<[usize; FEW_TABLES]> = smallvec![0; self.spans.len()];
         let mut first = 0;
         for &table in &self.present {
             let (before, rest) = masks.split_at_mut(first);

@@ -13,6 +13,7 @@ use super::instance::Scene;
 use super::names::Hoist;
 use super::position::MapKind;
 use super::recipe::{ColumnNumbers, Member};
+use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use jbt_model::attribute::{AttributeGroup, AttributeValue, Textured};
 use jbt_model::expression::Form;
 use jbt_model::falloff::FalloffKind;
@@ -86,11 +87,13 @@ pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Na
         // What particles are bound to besides their own values overrides these.
         if bindings[index].is_none()
             && let Some((particles, place)) = leaf.one_of(scene)
-            && let Some(values) = particles.values_of(&group.name)
+            && let Some(values_of) = particles.values_of(&group.name)
         {
             let position = scene.field(leaf.field(scene)).position;
-            let values: Vec<f64> = values.of(place).collect();
-            push_turned(group, &scene.position(position).map.matrix3, &values, row);
+            let mut room = [0.0; MAX_ATTRIBUTE_WIDTH];
+            let values = &mut room[..group.width()];
+            values.iter_mut().zip(values_of.of(place)).for_each(|(value, given)| *value = given);
+            push_turned(group, &scene.position(position).map.matrix3, values, row);
             return;
         }
         let at = bindings[index].and_then(|bound| bound.at);

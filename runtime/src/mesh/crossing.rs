@@ -135,7 +135,7 @@ pub(crate) fn look(
     let of_group = |signs: &mut Signs, index: usize| {
         span!("cells of some bricks");
         progress.breathe()?;
-        let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
+        let mut found = FoundCells::with_room(group, group * bricks.edge.pow(3) / 4);
         for brick in index * group..bricks.len().min((index + 1) * group) {
             samples.gather_inside(bricks, brick, &mut signs.points);
             signs.find(bricks, brick, &mut found);
@@ -176,9 +176,10 @@ struct FoundCells {
 }
 
 impl FoundCells {
-    /// Room for this many cells.
-    fn with_room(cells: usize) -> Self {
-        Self { cells: Vec::with_capacity(cells), ..Self::default() }
+    /// Room for this many bricks and cells.
+    fn with_room(bricks: usize, cells: usize) -> Self {
+        let (cell_counts, counts) = (Vec::with_capacity(bricks), Vec::with_capacity(bricks));
+        Self { cells: Vec::with_capacity(cells), cell_counts, counts, ..Self::default() }
     }
 }
 

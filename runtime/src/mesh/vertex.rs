@@ -22,7 +22,7 @@ use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use jbt_model::orientation::Orientation;
 
 use super::error::MeshError;
-use super::field::Field;
+use super::field::{AttributePlanes, Field};
 use super::fill::{FilledVector, VectorPart};
 use super::indexed::{Attribute, Mesh};
 use super::pull::{LANES, VertexLanes, VertexPlanes, pull_lanes};
@@ -184,8 +184,9 @@ impl VertexBatch {
         let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
         let gradient = self.gradient.each_mut().map(|plane| &mut plane[..count]);
         self.attributes.resize(width * count, 0.0);
-        let mut attributes: Vec<&mut [f32]> = self.attributes.chunks_exact_mut(count).collect();
+        let mut attributes: AttributePlanes<'_> = self.attributes.chunks_exact_mut(count).collect();
         field.all(region, x, y, z, &mut self.values[..count], gradient, &mut attributes)?;
+        drop(attributes);
         let done = Done {
             gradient_evaluations: (options.pulls * count) as u64,
             full_evaluations: count as u64,

@@ -1,6 +1,7 @@
 //! The kernels of a mesh as a field, and the pruner that says what matters where.
 
 use jbt_model::query::Query;
+use smallvec::SmallVec;
 
 use crate::boxes::{Box3, Divisible, Range};
 use crate::compiled::{Compiled, Decisions, Task};
@@ -147,10 +148,8 @@ impl Field for Kernels {
         attributes: &mut [&mut [f32]],
     ) -> Result<(), EvalError> {
         // Small bricks have few points: a list in memory would be a part of their time.
-        if attributes.is_empty() {
-            return self.all.eval_region(region, [x, y, z], &mut [field, gx, gy, gz]);
-        }
-        let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
+        let mut planes: SmallVec<[&mut [f32]; 8]> = SmallVec::new();
+        planes.extend([field, gx, gy, gz]);
         planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
         self.all.eval_region(region, [x, y, z], &mut planes)
     }

@@ -1,6 +1,7 @@
 //! Results of a run of the interval kernel: ranges of the field and of all probes in some boxes.
 
 use jbt_ir::Selection;
+use smallvec::SmallVec;
 
 use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
@@ -37,7 +38,7 @@ impl Ranges {
     pub(super) fn find(&mut self, kernel: &BoundKernel, rows: &Selection) -> Result<(), EvalError> {
         let boxes: [&[f32]; 6] =
             std::array::from_fn(|plane| &self.boxes[plane * self.stride..][..self.stride]);
-        let mut planes: Vec<&mut [f32]> = self.numbers.chunks_exact_mut(self.stride).collect();
+        let mut planes: SmallVec<[&mut [f32]; 8]> = self.numbers.chunks_exact_mut(self.stride).collect();
         kernel.run(rows, &boxes, &mut planes)?;
         Ok(())
     }

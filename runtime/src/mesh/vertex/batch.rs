@@ -9,6 +9,7 @@ use super::super::sample::{BrickSamples, corners};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
 use super::side::SharpVertex;
+use super::suspect::Suspects;
 use crate::boxes::Box3;
 
 /// Counts of the work at vertices.
@@ -85,7 +86,9 @@ pub(super) struct VertexBatch {
     pub(super) doubtful: Vec<usize>,
     /// Vertices at jumps of the field.
     pub(super) jumped: Vec<usize>,
-    /// Crossed edges at vertices that get a second look.
+    /// Vertices that get a second look.
+    pub(super) suspects: Suspects,
+    /// Crossed edges at these.
     pub(super) crossed: CrossedEdges,
 }
 

@@ -14,7 +14,7 @@
 
 use std::borrow::BorrowMut;
 
-use super::super::field::Field;
+use super::super::field::{AttributePlanes, Field};
 use super::super::pull::VertexPlanes;
 
 /// Two points, and the field at them: the first is outside, the second inside.
@@ -98,14 +98,36 @@ impl BracketPoints {
         points: impl Iterator<Item = [f32; 3]>,
     ) -> Result<(&[f32], &VertexPlanes), F::Error> {
         self.take(points);
-        let [x, y, z] = &self.planes;
-        self.values.resize(x.len(), 0.0);
-        self.gradient.iter_mut().for_each(|plane| plane.resize(x.len(), 0.0));
+        let ([x, y, z], values, gradient) = self.with_gradient();
         if !x.is_empty() {
-            let gradient = self.gradient.each_mut().map(Vec::as_mut_slice);
-            field.gradient(region, x, y, z, &mut self.values, gradient)?;
+            field.gradient(region, x, y, z, values, gradient)?;
         }
         Ok((&self.values, &self.gradient))
+    }
+
+    /// Evaluates everything at the points, of which there are some; `attributes` has room for their planes,
+    /// one after the other.
+    pub(super) fn ask_all<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        points: impl Iterator<Item = [f32; 3]>,
+        attributes: &mut [f32],
+    ) -> Result<(&[f32], &VertexPlanes), F::Error> {
+        self.take(points);
+        let ([x, y, z], values, gradient) = self.with_gradient();
+        let mut planes: AttributePlanes<'_> = attributes.chunks_exact_mut(x.len()).collect();
+        field.all(region, x, y, z, values, gradient, &mut planes)?;
+        Ok((&self.values, &self.gradient))
+    }
+
+    /// The points, and room for the field and its gradient at them.
+    fn with_gradient(&mut self) -> ([&[f32]; 3], &mut [f32], [&mut [f32]; 3]) {
+        let Self { planes, values, gradient } = self;
+        let count = planes[0].len();
+        values.resize(count, 0.0);
+        gradient.iter_mut().for_each(|plane| plane.resize(count, 0.0));
+        (planes.each_ref().map(Vec::as_slice), values, gradient.each_mut().map(Vec::as_mut_slice))
     }
 
     fn take(&mut self, points: impl Iterator<Item = [f32; 3]>) {
@@ -286,6 +308,8 @@ pub(super) struct CrossedEdges {
     /// The entries that are not 0.
     used: Vec<usize>,
     pub(super) points: BracketPoints,
+    /// For each sheet of the last question, whether it is left.
+    left: Vec<bool>,
     /// Edges that are to be halved; those of them that are not as far yet as a look, and their brackets.
     wanted: Vec<u32>,
     behind: Vec<u32>,
@@ -318,34 +342,42 @@ impl CrossedEdges {
         &self.edges[number as usize]
     }
 
-    /// Halves the edges of sheets until it is known which sheets have no edge that may jump. Of a sheet that
-    /// is hardly suspect (`true` beside its edges), the steepest edge is tested first. Returns the remaining
-    /// sheets, whose edges have been halved to the end, and the number of points evaluated.
+    /// Halves the edges of sheets until it is known which sheets have no edge that may jump: the others are
+    /// [left](Self::is_left), and their edges have been halved to the end. Of a sheet that is hardly suspect
+    /// (`true` beside its edges), the steepest edge is tested first. Returns the number of points evaluated.
     ///
-    /// Whether a sheet remains depends on its own edges alone, not on how far other sheets have halved them.
-    pub(super) fn bracket<F: Field>(
+    /// Whether a sheet is left depends on its own edges alone, not on how far other sheets have halved them.
+    pub(super) fn bracket<'a, F: Field>(
         &mut self,
         field: &F,
         region: &F::Region,
         iso: f32,
-        sheets: &[(&[u32], bool)],
-    ) -> Result<(Vec<bool>, u64), F::Error> {
-        let mut is_left = vec![true; sheets.len()];
+        (count, sheets): (usize, impl Fn(usize) -> (&'a [u32], bool)),
+    ) -> Result<u64, F::Error> {
         let mut asked = 0;
+        let (mut left, mut wanted) = (std::mem::take(&mut self.left), std::mem::take(&mut self.wanted));
+        left.clear();
+        left.resize(count, true);
         for look in 1..LOOKS.len() {
-            let next: Vec<(usize, &[u32])> = (0..sheets.len())
-                .filter(|&sheet| is_left[sheet])
-                .map(|sheet| {
-                    let (edges, is_near) = sheets[sheet];
-                    (sheet, if is_near && look == 1 { self.steepest(edges) } else { edges })
-                })
-                .collect();
-            asked += self.halve(field, region, iso, next.iter().flat_map(|(_, edges)| *edges), look)?;
-            for (sheet, edges) in next {
-                is_left[sheet] = edges.iter().any(|&edge| self.get(edge).may_jump(look));
+            let next = |edges: &Self, sheet: usize| {
+                let (all, is_near) = sheets(sheet);
+                if is_near && look == 1 { edges.steepest(all) } else { all }
+            };
+            wanted.clear();
+            let those_left = (0..count).filter(|&sheet| left[sheet]);
+            wanted.extend(those_left.flat_map(|sheet| next(self, sheet)));
+            asked += self.halve(field, region, iso, &mut wanted, look)?;
+            for (sheet, is_left) in left.iter_mut().enumerate().filter(|(_, is_left)| **is_left) {
+                *is_left = next(self, sheet).iter().any(|&edge| self.get(edge).may_jump(look));
             }
         }
-        Ok((is_left, asked))
+        (self.left, self.wanted) = (left, wanted);
+        Ok(asked)
+    }
+
+    /// Whether a sheet is left after the last [`bracket`](Self::bracket).
+    pub(super) fn is_left(&self, sheet: usize) -> bool {
+        self.left[sheet]
     }
 
     /// Halves some edges to the end.
@@ -356,7 +388,7 @@ impl CrossedEdges {
         iso: f32,
         edges: &[u32],
     ) -> Result<u64, F::Error> {
-        self.halve(field, region, iso, edges.iter(), LOOKS.len() - 1)
+        self.halve(field, region, iso, &mut edges.to_vec(), LOOKS.len() - 1)
     }
 
     /// The crossings of all edges, nearly: by one step of the rule of false position.
@@ -384,18 +416,16 @@ impl CrossedEdges {
         &edges[steepest..=steepest]
     }
 
-    /// Halves some edges up to a look. Returns the number of points evaluated.
-    fn halve<'a, F: Field>(
+    /// Halves some edges up to a look; those that are wanted twice, once. Returns the number of points
+    /// evaluated.
+    fn halve<F: Field>(
         &mut self,
         field: &F,
         region: &F::Region,
         iso: f32,
-        edges: impl Iterator<Item = &'a u32>,
+        wanted: &mut Vec<u32>,
         last: usize,
     ) -> Result<u64, F::Error> {
-        let mut wanted = std::mem::take(&mut self.wanted);
-        wanted.clear();
-        wanted.extend(edges);
         // Sheets share edges.
         wanted.sort_unstable();
         wanted.dedup();
@@ -413,7 +443,6 @@ impl CrossedEdges {
                 self.edges[edge as usize].look(look);
             }
         }
-        self.wanted = wanted;
         Ok(asked)
     }
 }

@@ -15,6 +15,7 @@
 use super::super::field::Field;
 use super::super::pull::{LANES, VertexLanes, VertexPlanes, squares};
 use super::batch::{Done, VertexBatch, VertexSource, lane, lanes};
+use super::bracket::BracketPoints;
 use super::seed::SeedGroup;
 use super::settle::{Stray, VertexPlace, is_far, settle};
 use super::sheet::{Sheet, Start};
@@ -76,6 +77,19 @@ fn judge_all(
     }
 }
 
+/// Room for what is found about suspects.
+#[derive(Default)]
+pub(super) struct Suspects {
+    verdicts: Vec<(usize, VertexTests)>,
+    /// The suspects, each with whether it is far from the surface.
+    found: Vec<(usize, bool)>,
+    sheets: Vec<Sheet>,
+    again: Vec<Again>,
+    /// The field and what belongs to it where it is asked for again.
+    points: BracketPoints,
+    attributes: Vec<f32>,
+}
+
 /// A second evaluation: the vertex, its position, and the point to evaluate.
 struct Again {
     vertex: usize,
@@ -93,19 +107,20 @@ impl VertexBatch {
     ) -> Result<Done, F::Error> {
         let VertexSource { field, options, regions, .. } = source;
         let (region, iso) = (&regions[brick], options.iso);
-        let suspects = self.suspects(iso);
-        if suspects.is_empty() {
+        self.find_suspects(iso);
+        if self.suspects.found.is_empty() {
             return Ok(Done::default());
         }
         self.crossed.clear(source.bricks.table_len());
-        let sheets: Vec<Sheet> =
-            suspects.iter().map(|&(vertex, _)| self.sheet(source, brick, vertex)).collect();
-        let edges: Vec<(&[u32], bool)> =
-            sheets.iter().zip(&suspects).map(|(sheet, (_, is_far))| (sheet.numbers(), !is_far)).collect();
-        let (jumps, mut jump_evaluations) = self.crossed.bracket(*field, region, iso, &edges)?;
+        let mut suspects = std::mem::take(&mut self.suspects);
+        let Suspects { found, sheets, again, .. } = &mut suspects;
+        sheets.clear();
+        sheets.extend(found.iter().map(|&(vertex, _)| self.sheet(source, brick, vertex)));
+        let edges = |sheet: usize| (sheets[sheet].numbers(), !found[sheet].1);
+        let mut jump_evaluations = self.crossed.bracket(*field, region, iso, (sheets.len(), edges))?;
         let (mut walls, mut strays) = (Vec::new(), Vec::new());
-        for ((sheet, (_, is_far)), jumps) in sheets.iter().zip(suspects).zip(jumps) {
-            if jumps {
+        for (number, (sheet, &(_, is_far))) in sheets.iter().zip(&*found).enumerate() {
+            if self.crossed.is_left(number) {
                 walls.push(Wall::new(sheet, &self.crossed));
             } else if is_far {
                 strays.push(self.stray(iso, sheet));
@@ -116,31 +131,34 @@ impl VertexBatch {
         let [gradient_evaluations, halvings] = settle(*field, region, iso, &mut strays, points)?;
         jump_evaluations += halvings;
         self.jumped.extend(walls.iter().map(|wall| wall.vertex));
-        let placed = walls.iter().map(|wall| {
+        again.clear();
+        again.extend(walls.iter().map(|wall| {
             let &Wall { vertex, position, inside, normal, .. } = wall;
             Again { vertex, position, asked: inside, normal }
-        });
-        let settled = strays.iter().map(|stray| {
+        }));
+        again.extend(strays.iter().map(|stray| {
             let (vertex, position) = (stray.index, stray.best());
             Again { vertex, position, asked: position, normal: None }
-        });
-        let again: Vec<Again> = placed.chain(settled).collect();
-        self.evaluate_again(source, brick, &again)?;
+        }));
+        self.evaluate_again(source, brick, &mut suspects)?;
+        let full_evaluations = suspects.again.len() as u64;
+        self.suspects = suspects;
         Ok(Done {
             gradient_evaluations,
-            full_evaluations: again.len() as u64,
+            full_evaluations,
             jump_evaluations,
             jump_vertices: walls.len() as u64,
             ..Done::default()
         })
     }
 
-    /// The suspects, each with whether it is far from the surface. Records vertices with doubtful normals.
-    fn suspects(&mut self, iso: f32) -> Vec<(usize, bool)> {
-        let mut found = Vec::new();
-        let mut verdicts = Vec::new();
-        judge_all(iso, &self.groups, &self.values, &self.gradient, &mut verdicts);
-        for (chunk, VertexTests { far, odd, turned }) in verdicts {
+    /// Finds the suspects, and records vertices with doubtful normals.
+    fn find_suspects(&mut self, iso: f32) {
+        let Suspects { verdicts, found, .. } = &mut self.suspects;
+        verdicts.clear();
+        found.clear();
+        judge_all(iso, &self.groups, &self.values, &self.gradient, verdicts);
+        for (chunk, VertexTests { far, odd, turned }) in &*verdicts {
             let start = chunk * LANES;
             for lane in 0..LANES.min(self.count - start) {
                 if far[lane] | odd[lane] == 1 {
@@ -151,7 +169,6 @@ impl VertexBatch {
                 }
             }
         }
-        found
     }
 
     fn sheet<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize, vertex: usize) -> Sheet {
@@ -175,18 +192,15 @@ impl VertexBatch {
         &mut self,
         source: &VertexSource<'_, F>,
         brick: usize,
-        again: &[Again],
+        Suspects { again, points, attributes, .. }: &mut Suspects,
     ) -> Result<(), F::Error> {
         let count = again.len();
         if count == 0 {
             return Ok(());
         }
-        let [x, y, z] = [0, 1, 2].map(|axis| again.iter().map(|one| one.asked[axis]).collect::<Vec<f32>>());
-        let (mut values, mut gradient) = (vec![0.0; count], [0; 3].map(|_| vec![0.0; count]));
-        let mut attributes = vec![0.0; self.attributes.len() / self.count * count];
-        let mut planes: Vec<&mut [f32]> = attributes.chunks_exact_mut(count).collect();
-        let slopes = gradient.each_mut().map(Vec::as_mut_slice);
-        source.field.all(&source.regions[brick], &x, &y, &z, &mut values, slopes, &mut planes)?;
+        attributes.resize(self.attributes.len() / self.count * count, 0.0);
+        let asked = again.iter().map(|one| one.asked);
+        let (values, gradient) = points.ask_all(source.field, &source.regions[brick], asked, attributes)?;
         for (n, one) in again.iter().enumerate() {
             let vertex = one.vertex;
             for (axis, slope) in gradient.iter().enumerate() {
