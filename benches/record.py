@@ -9,8 +9,8 @@ A record is a CSV file: comments (`# command: ...`, `# cpu: ...`, `# rustc: ...`
 each line of JSON; `compare --help` says what the keys are. <cpu> names the model and its best instruction set, or the one that
 `--level` or JBT_LEVEL asks for, so that numbers of different CPUs and levels are in different folders; <date> is that of the run, in UTC. A second run on a day replaces the first.
 
-The table stands in README.md between `<!-- benches:begin -->` and `<!-- benches:end -->`. It has one row for each case: where a
-case has several, the largest of those that most contestants took part in.
+The table stands in README.md between `<!-- benches:begin -->` and `<!-- benches:end -->`. It has one row for each case, or for each
+of its works where the column `of` names some: of several rows the largest of those that most contestants took part in.
 
 Exit codes: 0 fine; 1 what was asked for failed, or a contestant disagreed (the record is written all the same); 2 usage.
 """
@@ -36,13 +36,13 @@ BEGIN, END = "<!-- benches:begin -->", "<!-- benches:end -->"
 CARGO = ["cargo", "run", "--release", "-p", "jbt-benches", "--features", "peers", "--bin", "compare", "--", "--json"]
 
 # Other contestants than ours, the limit and fidget, in the order in which they are named.
-OTHERS = ["searched", "whole", "lanes", "splashsurf", "walk", "separate"]
+OTHERS = ["searched", "whole", "one_thread", "lanes", "splashsurf", "walk", "separate"]
 CONTESTANTS = ["ours", "limit", "fidget_jit", "fidget_vm", *OTHERS]
 
 # Columns of a record: these first and in this order, then any others by name, then the check.
-FIRST = ["case", "what", "primitives", "points", "unit"]
+FIRST = ["case", "what", "of", "primitives", "points", "unit"]
 FIRST += [name + suffix for name in CONTESTANTS for suffix in ("_ns", "_form")]
-FIRST += ["ratio_limit", "ratio_fidget"]
+FIRST += ["ratio_limit", "ratio_fidget", "ratio_threads"]
 LAST = ["checksum"]
 
 
@@ -191,12 +191,13 @@ def ratio(text):
 
 
 def chosen(rows):
-    """One row for each case, in the order of the record: the largest of those that most contestants took part in."""
+    """One row for each work of each case, in the order of the record: the largest of those that most contestants took part in."""
     best = {}
     for row in rows:
         rank = (sum(name + "_ns" in row for name in CONTESTANTS), int(row["primitives"]))
-        if row["case"] not in best or rank > best[row["case"]][0]:
-            best[row["case"]] = (rank, row)
+        work = (row["case"], row.get("of"))
+        if work not in best or rank > best[work][0]:
+            best[work] = (rank, row)
     return [row for _, row in best.values()]
 
 
@@ -207,15 +208,18 @@ def cells(row):
         times = [float(row[name + "_ns"]) for name in names if name + "_ns" in row]
         return time(min(times)) if times else ""
 
-    others = [f"{name} {timed(name)}" for name in OTHERS if timed(name)]
+    others = [f"{name.replace('_', ' ')} {timed(name)}" for name in OTHERS if timed(name)]
     if "published_evaluations_per_second" in row:
         others.append(f"published {time(1e9 / float(row['published_evaluations_per_second']))}")
+    if "ratio_threads" in row:
+        others.append(f"one thread / ours {ratio(row['ratio_threads'])}")
     if row["checksum"] != "ok":
         others.append(row["checksum"])
     ratios = [ratio(row[name]) if name in row else "" for name in ("ratio_limit", "ratio_fidget")]
     primitives = f"{int(row['primitives']):,}"
     fidget = timed("fidget_jit", "fidget_vm")
-    what = [f"`{row['case']}`", row.get("what", ""), primitives, row["unit"]]
+    said = ": ".join(row[name] for name in ("what", "of") if name in row)
+    what = [f"`{row['case']}`", said, primitives, row["unit"]]
     return [*what, timed("ours"), timed("limit"), fidget, *ratios, ", ".join(others)]
 
 

@@ -17,6 +17,9 @@ ROWS = [
     {"case": "scaling", "primitives": 20000, "unit": "run", "ours_ns": 43e6, "checksum": "ok"},
     {"case": "train", "primitives": 95, "unit": "evaluation", "ours_ns": 604.7, "published_evaluations_per_second": 2.6e6,
      "checksum": "walk: 1 | 2"},
+    {"case": "threads", "what": "meshes", "of": "few", "primitives": 5, "unit": "run", "ours_ns": 2e6, "one_thread_ns": 3e6,
+     "ratio_threads": 1.5, "checksum": "ok"},
+    {"case": "threads", "what": "meshes", "of": "many", "primitives": 50, "unit": "run", "ours_ns": 4e6, "checksum": "ok"},
 ]
 COMMENTS = [("command", "compare --json: all"), ("cpu", "Zen")]
 README = f"# Title\n\n{record.BEGIN}\n{record.END}\n\nThe rest.\n"
@@ -65,8 +68,8 @@ class Table(unittest.TestCase):
         ratios = {"1234.5": "1,234", "12.34": "12.3", "0.123": "0.12"}
         self.assertEqual({text: record.ratio(text) for text in ratios}, ratios)
 
-    def test_a_case_has_one_row(self):
-        self.assertEqual([row["primitives"] for row in record.chosen(ROWS)], [200, 2000, 95])
+    def test_a_case_has_one_row_for_each_of_its_works(self):
+        self.assertEqual([row["primitives"] for row in record.chosen(ROWS)], [200, 2000, 95, 5, 50])
 
     def test_cells(self):
         rows = record.read_record(record.write_record(COMMENTS, ROWS))[1]
@@ -74,6 +77,8 @@ class Table(unittest.TestCase):
             "`dense-field`", "the field, of 200", "200", "primitive and point", "0.581 ns", "0.193 ns", "0.918 ns", "3.00", "1.58",
             "walk 7.72 ns"])
         self.assertEqual(record.cells(rows[4])[-4:], ["", "", "", "published 385 ns, walk: 1 | 2"])
+        self.assertEqual(record.cells(rows[5])[1], "meshes: few")
+        self.assertEqual(record.cells(rows[5])[-1], "one thread 3.00 ms, one thread / ours 1.50")
 
 
 class Commands(unittest.TestCase):

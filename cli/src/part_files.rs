@@ -2,7 +2,8 @@
 //!
 //! The name of the part takes the place of the braces, as far as every file system takes it. All files are
 //! written before the first one takes its place: one that cannot be written leaves the others as they were.
-//! Few of them are open at once, so more of them than that have temporary names meanwhile.
+//! All are open until then, so that a kill leaves none of them; if they are more than the process may have
+//! open, they have temporary names meanwhile.
 
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
@@ -19,8 +20,8 @@ use crate::sequence::BRACES;
 /// The longest name of a part in the name of a file, in bytes: file systems take 255 for all of it.
 const LONGEST: usize = 120;
 
-/// Files that may be open at once: systems let a process have 256 of them or more.
-const OPEN: usize = 16;
+/// Files that this program has open besides.
+const OTHERS: usize = 64;
 
 /// Names that stand for devices on Windows, whatever follows behind a point.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
@@ -86,9 +87,9 @@ pub fn write_parts(
     places: &[Destination<Format>],
 ) -> Result<Vec<WrittenOutput>, MeshFileError> {
     let pieces = mesh.pieces();
+    let many = places.len() > most_open();
     let mut written = Vec::with_capacity(places.len());
     for (place, (destination, piece)) in places.iter().zip(&pieces).enumerate() {
-        let many = places.len() > OPEN;
         let output = if many { Output::open_one_of_many(destination) } else { Output::open(destination) };
         let constants = options.constants.get(place).cloned().into_iter().collect();
         let options = ExportOptions { name: piece.name.map(str::to_owned), constants, ..options.clone() };
@@ -96,6 +97,22 @@ pub fn write_parts(
         written.push(write_to(output, &mesh.piece(piece), destination.kind, &options)?);
     }
     Ok(written)
+}
+
+/// Files of parts that may be open at once. Systems let a process have few, and more if it asks.
+#[cfg(unix)]
+fn most_open() -> usize {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
+    let limit = if raised.is_ok() { maximum } else { current };
+    limit.map_or(usize::MAX, |limit| usize::try_from(limit).unwrap_or(usize::MAX)).saturating_sub(OTHERS)
+}
+
+/// Files of parts that may be open at once: as many as any system has for a process.
+#[cfg(not(unix))]
+fn most_open() -> usize {
+    256 - OTHERS
 }
 
 fn write_to(

@@ -33,7 +33,7 @@ struct Arguments {
     #[arg(long)]
     quick: bool,
 
-    /// Threads of the cases that mesh; all others run on one
+    /// Threads of the cases that mesh; all others run on one, but for those that say two
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
 
@@ -86,18 +86,19 @@ Every contestant is checked against the f64 oracle before any time is reported; 
 Times are medians: of at least 5 runs for ours and for the limit, of 1 run for others that take more than 2 s. With --quick, others run
 once if they take more than 0.04 s, and all do if they take more than 5 s.
 
-Keys of --json: case, what (it measures), primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
+Keys of --json: case, what (it measures), of (which of its works, if there are several), primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
 forms, NAME_form, the fastest. NAME is one of:
   ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
   limit       hand-written loops for sums of points (key limit_level: their instruction set, which --level bounds too)
   searched    the compiler, with the search for parts that its mesh misses
   whole       the compiler, everything made anew after an edit but the code
+  one_thread  the compiler on one thread, where ours has several
   lanes       the lanes interpreter, beside ours where both take part
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
   walk        a tree walker                  separate   a walk for each answer; gradients by differences
-ratio_limit is ours / limit, ratio_fidget is fidget / ours, medians over rounds in which both ran; checksum is ok, or says
-who disagrees. Cases that mesh have threads and triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
+ratio_limit is ours / limit, ratio_fidget is fidget / ours, ratio_threads is one_thread / ours, medians over rounds in which both ran;
+checksum is ok, or says who disagrees. Cases that mesh have threads and triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
 the environment variable JBT_SAMPLES names a folder that has them as parsip/train_corrected.scene and vm/*.vm.
 
 All are built alike: opt-level 3, one codegen unit for each crate, no link-time optimisation, for any CPU of the architecture.

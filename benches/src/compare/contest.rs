@@ -18,6 +18,8 @@ pub enum Contestant {
     Searched,
     /// The compiler, everything made anew after an edit but the code.
     Whole,
+    /// The compiler on one thread, beside itself on several.
+    OneThread,
     /// The compiler's interpreter, beside its machine code.
     Lanes,
     /// fidget's machine code.
@@ -34,11 +36,12 @@ pub enum Contestant {
 
 impl Contestant {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Ours,
         Self::Limit,
         Self::Searched,
         Self::Whole,
+        Self::OneThread,
         Self::Lanes,
         Self::FidgetJit,
         Self::FidgetVm,
@@ -55,6 +58,7 @@ impl Contestant {
             Self::Limit => "limit",
             Self::Searched => "searched",
             Self::Whole => "whole",
+            Self::OneThread => "one_thread",
             Self::Lanes => "lanes",
             Self::FidgetJit => "fidget_jit",
             Self::FidgetVm => "fidget_vm",
@@ -67,7 +71,7 @@ impl Contestant {
     /// Whether it is what we measure, and not what we measure against.
     const fn is_measured_well(self) -> bool {
         match self {
-            Self::Ours | Self::Limit | Self::Searched | Self::Whole | Self::Lanes => true,
+            Self::Ours | Self::Limit | Self::Searched | Self::Whole | Self::OneThread | Self::Lanes => true,
             Self::FidgetJit | Self::FidgetVm | Self::Splashsurf | Self::Walk | Self::Separate => false,
         }
     }

@@ -109,6 +109,7 @@ impl DenseTask {
     fn row(&self, case: &'static str, engine: &str, contest: Contest<'_>, options: Options) -> ResultRow {
         ResultRow {
             case,
+            of: "",
             primitives: self.blobs.len(),
             points: self.points.len(),
             unit: "primitive and point",

@@ -105,6 +105,7 @@ fn row(count: usize, options: Options) -> ResultRow {
     });
     ResultRow {
         case: "live",
+        of: if count == 4_096 { "few" } else { "many" },
         primitives: count,
         points: (CELLS + 1).pow(3),
         unit: "run",

@@ -31,7 +31,7 @@ const MOST_WALKED: usize = 10_000_000;
 const TRIANGLES_OFF: f64 = 0.01;
 
 /// What is meshed, and on which threads.
-struct MeshTask {
+pub(super) struct MeshTask {
     blobs: Vec<Blob>,
     tree: CheckedTree,
     cells: usize,
@@ -45,7 +45,7 @@ impl MeshTask {
         Self { blobs, tree, cells, pool: pool.expect("threads can be made") }
     }
 
-    fn ours(&self, thin_parts: bool) -> Polygonized {
+    pub(super) fn ours(&self, thin_parts: bool) -> Polygonized {
         let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
         let polygonize = Polygonize {
             region,
@@ -58,7 +58,7 @@ impl MeshTask {
         self.pool.install(run).expect("blobs have a mesh")
     }
 
-    fn limit(&self) -> limit::mesh::Mesh {
+    pub(super) fn limit(&self) -> limit::mesh::Mesh {
         let cell = 2.0 / self.cells as f32;
         let lattice = limit::mesh::Lattice { origin: [-1.0; 3], cell, counts: [self.cells + 1; 3] };
         self.pool.install(|| limit::mesh::mesh(&self.blobs, &lattice, ISO))
@@ -66,7 +66,7 @@ impl MeshTask {
 
     /// Whether the field at vertices is the iso-value, as far as a step or two of Newton's can bring it
     /// there.
-    fn check(&self, positions: &[[f32; 3]]) -> Result<(), String> {
+    pub(super) fn check(&self, positions: &[[f32; 3]]) -> Result<(), String> {
         let checked = (MOST_WALKED / self.blobs.len()).clamp(FEWEST_CHECKED, MOST_CHECKED);
         let step = positions.len().div_ceil(checked).max(1);
         let offs: Vec<f64> = (positions.iter().step_by(step))
@@ -80,6 +80,30 @@ impl MeshTask {
         Err(format!(
             "vertices are off the surface: the field is {mean:.1e} from the iso-value, {most:.1e} at worst"
         ))
+    }
+
+    pub(super) fn primitives(&self) -> usize {
+        self.blobs.len()
+    }
+
+    /// Points of the lattice.
+    pub(super) fn points(&self) -> usize {
+        (self.cells + 1).pow(3)
+    }
+
+    /// Enters splashsurf, which computes another surface of the same particles, with the same reach and
+    /// cells.
+    pub(super) fn enter_splashsurf<'a>(&'a self, contest: &mut Contest<'a>, options: Options) {
+        let cell = 2.0 / self.cells as f32;
+        for (division, form) in divisions(self.blobs.len()) {
+            let peer = Particles::new(&self.blobs, cell, division, peer_threads(options));
+            let mesh = move || peer.as_ref().map_err(Clone::clone).and_then(Particles::mesh);
+            contest.enter_checked(Contestant::Splashsurf, form, mesh, |made| match made {
+                Ok(made) if made.triangles > 0 => Ok(()),
+                Ok(_) => Err("no triangles".to_owned()),
+                Err(error) => Err(error.to_string()),
+            });
+        }
     }
 
     /// Enters ours and the limit, which make one mesh. Returns the number of triangles and the engine.
@@ -116,8 +140,9 @@ impl MeshTask {
     ) -> ResultRow {
         ResultRow {
             case,
-            primitives: self.blobs.len(),
-            points: (self.cells + 1).pow(3),
+            of: "",
+            primitives: self.primitives(),
+            points: self.points(),
             unit: "run",
             units: 1.0,
             standings: contest.run(options.effort()),
@@ -135,9 +160,21 @@ pub(super) fn peer_threads(options: Options) -> Threads {
     if options.threads == 1 { Threads::One } else { Threads::All }
 }
 
+/// Blobs in a cube, on the lattice of their case.
+pub(super) fn task_of_blobs(count: usize, options: Options) -> MeshTask {
+    MeshTask::new(model::blobs(count, 1), CELLS, options)
+}
+
+/// A ball of particles of one size, each of which about 30 others reach: their fields end about six cells
+/// from them.
+pub(super) fn task_of_particles(count: usize, options: Options) -> MeshTask {
+    let cells = if count > 100_000 { 319 } else { 83 };
+    MeshTask::new(model::particles(count, 1), cells, options)
+}
+
 /// Blobs in a cube.
 pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<ResultRow> {
-    let task = MeshTask::new(model::blobs(count, 1), CELLS, options);
+    let task = task_of_blobs(count, options);
     let mut contest = Contest::new();
     let made = task.enter(&mut contest);
     if !(options.quick && count > 1_000) {
@@ -165,34 +202,18 @@ fn gates(count: usize, options: Options) -> &'static [Gate] {
     }
 }
 
-/// A ball of particles of one size, each of which about 30 others reach. splashsurf computes another surface
-/// of the same particles, with the same reach and cells.
+/// A ball of particles to a mesh, with splashsurf beside.
 pub(super) fn particles(options: Options) -> Vec<ResultRow> {
-    let counts: &[(usize, usize)] =
-        if options.quick { &[(10_000, 83)] } else { &[(10_000, 83), (583_000, LATTICE_OF_PARTICLES - 1)] };
-    let row = |&(count, cells): &(usize, usize)| {
-        let particles = model::particles(count, 1);
-        let task = MeshTask::new(particles, cells, options);
+    let counts: &[usize] = if options.quick { &[10_000] } else { &[10_000, 583_000] };
+    let row = |&count: &usize| {
+        let task = task_of_particles(count, options);
         let mut contest = Contest::new();
         let made = task.enter(&mut contest);
-        let cell = 2.0 / cells as f32;
-        for (division, form) in divisions(count) {
-            let peer = Particles::new(&task.blobs, cell, division, peer_threads(options));
-            let mesh = move || peer.as_ref().map_err(Clone::clone).and_then(Particles::mesh);
-            contest.enter_checked(Contestant::Splashsurf, form, mesh, |made| match made {
-                Ok(made) if made.triangles > 0 => Ok(()),
-                Ok(_) => Err("no triangles".to_owned()),
-                Err(error) => Err(error.to_string()),
-            });
-        }
+        task.enter_splashsurf(&mut contest, options);
         task.row("particles", contest, made, options)
     };
     counts.iter().map(row).collect()
 }
-
-/// Points of the lattice along an axis of [-1, 1]^3, for the most particles. Their fields end about six cells
-/// from them, those of fewer particles too.
-const LATTICE_OF_PARTICLES: usize = 320;
 
 /// The ways of splashsurf that are worth trying: one grid for everything takes minutes for many particles.
 fn divisions(count: usize) -> Vec<(Division, &'static str)> {

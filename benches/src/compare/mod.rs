@@ -17,6 +17,7 @@ mod picture;
 mod programs;
 mod report;
 mod rows;
+mod threads;
 mod train;
 mod unions;
 
@@ -81,6 +82,7 @@ impl Case {
             run: unions::small_boxes,
         },
         Self { name: "particles", what: "a ball of particles to a mesh", run: mesh::particles },
+        Self { name: "threads", what: "meshes on two threads, and on one", run: threads::threads },
         Self {
             name: "train",
             what: "the field of the ParsIP train on its lattice, cell 0.13",
@@ -118,7 +120,7 @@ impl Case {
         },
         Self {
             name: "live",
-            what: "one of 4,096 points moves, until the mesh is up to date, 129^3 lattice",
+            what: "one of many points moves, until the mesh is up to date, 129^3 lattice",
             run: live::moves,
         },
     ];

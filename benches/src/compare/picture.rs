@@ -42,6 +42,7 @@ pub(super) fn prospero(options: Options) -> Vec<ResultRow> {
     let pixels = (SIDE * SIDE) as usize;
     let row = |primitives, standings, extra| ResultRow {
         case: "prospero",
+        of: "",
         primitives,
         points: pixels,
         unit: "run",
@@ -117,8 +118,9 @@ pub(super) fn hero(options: Options) -> Vec<ResultRow> {
     let tree = model.check().expect("the scene is right");
     let renderer = Renderer::new(&Compiler::new(), &tree).expect("the scene compiles");
     let mut rows = Vec::new();
-    for (quality, word) in [(Quality::Draft, "draft"), (Quality::Good, "good")] {
-        for threads in [1, 2] {
+    let of = [["draft, one thread", "draft, two"], ["good, one thread", "good, two"]];
+    for ((quality, word), of) in [(Quality::Draft, "draft"), (Quality::Good, "good")].into_iter().zip(of) {
+        for (threads, of) in (1..).zip(of) {
             let render = Render { quality, ..Render::default() };
             let pool = pool(Options { threads, ..options });
             let ours = || {
@@ -130,6 +132,7 @@ pub(super) fn hero(options: Options) -> Vec<ResultRow> {
             contest.enter(Contestant::Ours, word, Ok(()), ours);
             rows.push(ResultRow {
                 case: "hero-picture",
+                of,
                 primitives: renderer.evaluator().evaluations_per_point() as usize,
                 points: render.size.iter().map(|&side| side as usize).product(),
                 unit: "run",
@@ -189,6 +192,7 @@ pub(super) fn blobs(options: Options) -> Vec<ResultRow> {
     let standings = contest.run(options.effort());
     vec![ResultRow {
         case: "picture",
+        of: "",
         primitives: BLOBS,
         points: (PICTURE * PICTURE) as usize,
         unit: "run",

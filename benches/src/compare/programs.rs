@@ -86,6 +86,7 @@ impl ImportedProgram {
         self.fidget::<VmFunction>(&mut contest, Contestant::FidgetVm);
         ResultRow {
             case: "programs",
+            of: "",
             primitives: self.bytes.iter().filter(|&&byte| byte == b'\n').count(),
             points: POINTS,
             unit: "point",
@@ -102,6 +103,7 @@ pub(super) fn programs(options: Options) -> Vec<ResultRow> {
         Ok(program) => program.row(options),
         Err(reason) => ResultRow {
             case: "programs",
+            of: "",
             primitives: 0,
             points: 0,
             unit: "point",

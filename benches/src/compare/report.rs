@@ -11,6 +11,8 @@ use super::contest::{Contestant, Standings};
 pub struct ResultRow {
     /// The case.
     pub case: &'static str,
+    /// Which of the case's works, if it has several that all stand in a table; else empty.
+    pub of: &'static str,
     /// Primitives of the model.
     pub primitives: usize,
     /// Points that were asked for: lattice points for meshes, 0 where none are.
@@ -48,6 +50,12 @@ impl ResultRow {
         Some(fidget.ratio(self.standings.of(Contestant::Ours)?))
     }
 
+    /// Ours on one thread as a multiple of ours: 2 at most on two threads.
+    #[must_use]
+    pub fn ratio_threads(&self) -> Option<f64> {
+        Some(self.standings.of(Contestant::OneThread)?.ratio(self.standings.of(Contestant::Ours)?))
+    }
+
     /// `ok`, or who was not timed and why.
     #[must_use]
     pub fn checksum(&self) -> String {
@@ -63,6 +71,9 @@ impl ResultRow {
         let mut object = Map::new();
         object.insert("case".to_owned(), json!(self.case));
         object.insert("what".to_owned(), json!(what));
+        if !self.of.is_empty() {
+            object.insert("of".to_owned(), json!(self.of));
+        }
         object.insert("primitives".to_owned(), json!(self.primitives));
         object.insert("points".to_owned(), json!(self.points));
         object.insert("unit".to_owned(), json!(self.unit));
@@ -74,7 +85,12 @@ impl ResultRow {
                 object.insert(format!("{name}_form"), json!(standing.form));
             }
         }
-        for (name, ratio) in [("ratio_limit", self.ratio_limit()), ("ratio_fidget", self.ratio_fidget())] {
+        let ratios = [
+            ("ratio_limit", self.ratio_limit()),
+            ("ratio_fidget", self.ratio_fidget()),
+            ("ratio_threads", self.ratio_threads()),
+        ];
+        for (name, ratio) in ratios {
             if let Some(ratio) = ratio {
                 object.insert(name.to_owned(), json!(rounded(ratio)));
             }
@@ -93,9 +109,9 @@ fn rounded(number: f64) -> f64 {
 }
 
 /// Widths of the table's columns: the first ones, then one for each contestant, then the ratios.
-const HEAD: [(&str, usize); 4] = [("case", 15), ("primitives", 11), ("points", 11), ("time of a", 21)];
+const HEAD: [(&str, usize); 4] = [("case", 26), ("primitives", 11), ("points", 11), ("time of a", 21)];
 const TIME: usize = 13;
-const RATIO: usize = 13;
+const RATIO: usize = 17;
 
 /// The heading of the table.
 #[must_use]
@@ -107,7 +123,10 @@ pub fn heading() -> String {
     for contestant in Contestant::ALL {
         let _ = write!(line, "{:>TIME$}", contestant.name());
     }
-    let _ = write!(line, "{:>RATIO$}{:>RATIO$}  check", "ours/limit", "fidget/ours");
+    for ratio in ["ours/limit", "fidget/ours", "one thread/ours"] {
+        let _ = write!(line, "{ratio:>RATIO$}");
+    }
+    line.push_str("  check");
     line
 }
 
@@ -117,12 +136,15 @@ pub fn line(row: &ResultRow) -> String {
     let [case, primitives, points, unit] = HEAD.map(|(_, width)| width);
     let mut line = format!(
         "{:<case$}{:>primitives$}{:>points$}{:>unit$}",
-        row.case, row.primitives, row.points, row.unit
+        format!("{} {}", row.case, row.of),
+        row.primitives,
+        row.points,
+        row.unit
     );
     for contestant in Contestant::ALL {
         let _ = write!(line, "{:>TIME$}", row.nanoseconds(contestant).map_or("-".to_owned(), time));
     }
-    for ratio in [row.ratio_limit(), row.ratio_fidget()] {
+    for ratio in [row.ratio_limit(), row.ratio_fidget(), row.ratio_threads()] {
         let _ = write!(line, "{:>RATIO$}", ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.2}")));
     }
     let _ = write!(line, "  {}", row.checksum());
@@ -155,6 +177,7 @@ mod tests {
         };
         ResultRow {
             case: "dense-field",
+            of: "",
             primitives: 200,
             points: 1000,
             unit: "primitive and point",

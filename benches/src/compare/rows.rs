@@ -47,6 +47,7 @@ fn compile_of(count: usize, options: Options) -> ResultRow {
     contest.enter(Contestant::Walk, "", checked, || Walker::new(&tree));
     ResultRow {
         case: "compile",
+        of: "",
         primitives: count,
         points: 0,
         unit: "primitive",
@@ -135,6 +136,7 @@ pub(super) fn edit(options: Options) -> Vec<ResultRow> {
     });
     vec![ResultRow {
         case: "edit",
+        of: "",
         primitives: edit.blobs[0].len(),
         points: edit.points.len(),
         unit: "run",

@@ -47,6 +47,7 @@ fn lattice(tree: &CheckedTree) -> Points {
 pub(super) fn train(options: Options) -> Vec<ResultRow> {
     let row = |primitives, points: usize, standings, extra| ResultRow {
         case: "train",
+        of: "",
         primitives,
         points,
         unit: "evaluation",

@@ -18,10 +18,13 @@ use crate::peers::fidget::{FidgetProgram, JitFunction};
 
 /// Cells along an axis of the lattice over [-1, 1]^3: 2^7.
 const DEPTH: u8 = 7;
+/// Points of the lattice.
+pub(super) const POINTS: usize = ((1 << DEPTH) + 1_usize).pow(3);
 /// The spheres of a union.
-const SPHERES: usize = 1024;
-/// Boxes along an axis whose rows are counted.
-const BOXES: usize = 16;
+pub(super) const SPHERES: usize = 1024;
+/// The side of the boxes whose rows are counted, and how many are asked.
+const BOX: f32 = 2.0 / 128.0;
+const BOXES: usize = 2_000;
 /// How many vertices are checked.
 const CHECKED: usize = 500;
 /// How far from the surface a vertex may be, on average, by the value of the program.
@@ -123,13 +126,13 @@ fn read(bytes: &str) -> CheckedTree {
 }
 
 /// The same spheres as primitives: soft objects have the iso-value at half their radius.
-fn primitives() -> CheckedTree {
+pub(super) fn primitives() -> CheckedTree {
     let sphere = |(centre, radius): ([f64; 3], f64)| jbt::build::point(centre, 2.0 * radius);
     let union = jbt::Tree::union(spheres().into_iter().map(sphere));
     jbt::Model::new(union).check().expect("the model is good")
 }
 
-fn ours(tree: &CheckedTree, pool: &rayon::ThreadPool) -> Polygonized {
+pub(super) fn ours(tree: &CheckedTree, pool: &rayon::ThreadPool) -> Polygonized {
     let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
     let fineness = Fineness::Resolution(1 << DEPTH);
     let polygonize = Polygonize { region, fineness, verify: false, thin_parts: false, sharp: false };
@@ -137,7 +140,7 @@ fn ours(tree: &CheckedTree, pool: &rayon::ThreadPool) -> Polygonized {
 }
 
 /// Whether the field at vertices is the iso-value.
-fn check(tree: &CheckedTree, made: &Polygonized) -> Result<(), String> {
+pub(super) fn check(tree: &CheckedTree, made: &Polygonized) -> Result<(), String> {
     let positions = &made.mesh.positions;
     let step = positions.len().div_ceil(CHECKED).max(1);
     let offs: Vec<f64> = (positions.iter().step_by(step))
@@ -147,19 +150,31 @@ fn check(tree: &CheckedTree, made: &Polygonized) -> Result<(), String> {
     if mean <= VERTICES_OFF { Ok(()) } else { Err(format!("vertices are off the surface by {mean:.1e}")) }
 }
 
-/// The rows of a model, and how many run in a box of 1/16 of the domain's side on average.
-fn rows(tree: &CheckedTree) -> (usize, f64) {
-    let pruner = Compiler::new().compile(tree).pruner().expect("the model compiles");
-    let side = 2.0 / BOXES as f32;
-    let mut sum = 0;
-    for index in 0..BOXES.pow(3) {
-        let low = [index % BOXES, index / BOXES % BOXES, index / BOXES.pow(2)].map(|i| i as f32 * side - 1.0);
-        sum += pruner.region(Box3::new(low, low.map(|low| low + side))).expect("a proper box").rows();
-    }
-    (pruner.everywhere().rows(), sum as f64 / BOXES.pow(3) as f64)
+/// The union of as many small sums: two points side by side.
+fn sums() -> CheckedTree {
+    let pair = |(centre, radius): ([f64; 3], f64)| {
+        let beside = [centre[0] + 0.5 * radius, centre[1], centre[2]];
+        jbt::Tree::sum([centre, beside].map(|at| jbt::build::point(at, 2.0 * radius)))
+    };
+    let union = jbt::Tree::union(spheres().into_iter().map(pair));
+    jbt::Model::new(union).check().expect("the model is good")
 }
 
-fn row(solid: &'static str, tree: &CheckedTree, program: &str, options: Options) -> ResultRow {
+/// The rows of a model, and how many run in a box of 1/128 of the domain's side: on average, and at most.
+fn rows(tree: &CheckedTree) -> (usize, f64, usize) {
+    let pruner = Compiler::new().compile(tree).pruner().expect("the model compiles");
+    let mut rng = Rng::with_seed(3);
+    let (mut sum, mut most) = (0, 0);
+    for _ in 0..BOXES {
+        let low = [(); 3].map(|()| (2.0 - BOX) * rng.f32() - 1.0);
+        let rows = pruner.region(Box3::new(low, low.map(|low| low + BOX))).expect("a proper box").rows();
+        (sum, most) = (sum + rows, most.max(rows));
+    }
+    (pruner.everywhere().rows(), sum as f64 / BOXES as f64, most)
+}
+
+/// `program` is what fidget is given, if there is one.
+fn row(of: &'static str, tree: &CheckedTree, program: Option<&str>, options: Options) -> ResultRow {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads");
     let (mut contest, mut triangles) = (Contest::new(), 0);
     contest.enter_checked(
@@ -171,26 +186,29 @@ fn row(solid: &'static str, tree: &CheckedTree, program: &str, options: Options)
             check(tree, made)
         },
     );
-    let mesh = || {
-        let program = FidgetProgram::<JitFunction>::new(program.as_bytes()).expect("fidget reads it");
-        program.mesh(DEPTH, peer_threads(options))
-    };
-    contest.enter_checked(Contestant::FidgetJit, "", mesh, |made| match made.triangles {
-        0 => Err("no triangles".to_owned()),
-        _ => Ok(()),
-    });
-    let (all, left) = rows(tree);
+    if let Some(program) = program {
+        let mesh = || {
+            let program = FidgetProgram::<JitFunction>::new(program.as_bytes()).expect("fidget reads it");
+            program.mesh(DEPTH, peer_threads(options))
+        };
+        contest.enter_checked(Contestant::FidgetJit, "", mesh, |made| match made.triangles {
+            0 => Err("no triangles".to_owned()),
+            _ => Ok(()),
+        });
+    }
+    let (all, left, most) = rows(tree);
     ResultRow {
         case: "unions",
+        of,
         primitives: all,
-        points: ((1 << DEPTH) + 1_usize).pow(3),
+        points: POINTS,
         unit: "run",
         units: 1.0,
         standings: contest.run(options.effort()),
         extra: vec![
-            ("solid", json!(solid)),
             ("rows", json!(all)),
             ("rows_in_a_box", json!(left)),
+            ("most_rows_in_a_box", json!(most)),
             ("threads", json!(options.threads)),
             ("triangles", json!(triangles)),
         ],
@@ -201,9 +219,10 @@ fn row(solid: &'static str, tree: &CheckedTree, program: &str, options: Options)
 pub(super) fn unions(options: Options) -> Vec<ResultRow> {
     let (chain, sponge) = (chain(), sponge());
     vec![
-        row("primitives", &primitives(), &chain, options),
-        row("menger", &read(&sponge), &sponge, options),
-        row("spheres", &read(&chain), &chain, options),
+        row("primitives", &primitives(), Some(&chain), options),
+        row("small sums", &sums(), None, options),
+        row("menger", &read(&sponge), Some(&sponge), options),
+        row("spheres", &read(&chain), Some(&chain), options),
     ]
 }
 
@@ -229,6 +248,7 @@ fn small_box(count: usize, options: Options) -> ResultRow {
     contest.enter(Contestant::Ours, "", Ok(()), rows);
     ResultRow {
         case: "small-box",
+        of: "",
         primitives: count,
         points: 0,
         unit: "box",

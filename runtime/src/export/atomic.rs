@@ -14,9 +14,9 @@ use tempfile::TempPath;
 ///
 /// On Linux they have no name before [`finish`](Self::finish), so that a process that is killed leaves
 /// nothing where nothing was. While a file is replaced they have one for an instant, `.jbt-0-NAME` beside it,
-/// which the next one that writes `NAME` removes. Where files need a name, they have a temporary one that
-/// begins with `.jbt-`, and dropping this removes it. Whoever drops this before `finish` leaves the file as
-/// it was.
+/// which the next one that writes `NAME` removes. Where files need a name, they have that one all the time;
+/// dropping this removes it, too. On other systems it has random letters, and stays after a kill. Whoever
+/// drops this before `finish` leaves the file as it was.
 ///
 /// A file that is there already keeps its permissions, a new one gets those that files usually get. A link is
 /// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come. So
@@ -36,6 +36,9 @@ struct PendingFile {
     temporary: Option<TempPath>,
     path: PathBuf,
     replace: bool,
+    /// Whether the file is open until it is in its place: a temporary name that can be told from one that a
+    /// kill has left is locked as long.
+    stays_open: bool,
 }
 
 /// A new file, and its temporary name if it has one.
@@ -58,20 +61,26 @@ impl AtomicFile {
     /// Whatever the system refuses; a folder, a file that is read-only, a path whose folder is not there, and
     /// a new file, or one that is not to be replaced, in a folder that takes no new file.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
-        Self::begin(path, replace, begin)
+        Self::begin(path, replace, begin, true)
     }
 
-    /// The same with a temporary name from the beginning: then [`close`](Self::close) closes it. For whoever
-    /// writes more files at once than a process may have open.
+    /// The same with a temporary name of random letters from the beginning: then [`close`](Self::close)
+    /// closes it. For whoever writes more files at once than a process may have open. A kill leaves that
+    /// name.
     ///
     /// # Errors
     ///
     /// As [`create`](Self::create).
     pub fn create_with_name(path: &Path, replace: bool) -> io::Result<Self> {
-        Self::begin(path, replace, begin_with_name)
+        Self::begin(path, replace, |_, folder| begin_with_name(folder), false)
     }
 
-    fn begin(path: &Path, replace: bool, begin: fn(&Path) -> io::Result<BegunFile>) -> io::Result<Self> {
+    fn begin(
+        path: &Path,
+        replace: bool,
+        begin: fn(&Path, &Path) -> io::Result<BegunFile>,
+        stays_open: bool,
+    ) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {
                 let file = File::options().write(true).open(path)?;
@@ -80,7 +89,7 @@ impl AtomicFile {
             PathKind::File { path, folder, old } => {
                 #[cfg(target_os = "linux")]
                 nameless::remove_left(&path);
-                let (file, temporary) = match begin(&folder) {
+                let (file, temporary) = match begin(&path, &folder) {
                     Ok(begun) => begun,
                     Err(error) if replace && old.is_some() && takes_no_file(&error) => {
                         let file = in_place(&path, error)?;
@@ -92,7 +101,7 @@ impl AtomicFile {
                 if let Some(old) = old {
                     file.set_permissions(old)?;
                 }
-                let target = Some(PendingFile { temporary, path, replace });
+                let target = Some(PendingFile { temporary, path, replace, stays_open });
                 Ok(Self { file, target, in_place: false })
             }
         }
@@ -107,7 +116,7 @@ impl AtomicFile {
         match PathKind::at(path)? {
             // To open a pipe is to wait for its reader.
             PathKind::Direct(_) => Ok(()),
-            PathKind::File { folder, path, old } => match begin(&folder) {
+            PathKind::File { folder, path, old } => match begin(&path, &folder) {
                 Err(error) if old.is_some() && takes_no_file(&error) => in_place(&path, error).map(drop),
                 begun => begun.map(drop),
             },
@@ -126,7 +135,8 @@ impl AtomicFile {
         self.target.as_ref()?.temporary.as_deref()
     }
 
-    /// Ends the contents and brings them to the disk. Those with a temporary name are open no longer.
+    /// Ends the contents and brings them to the disk. Those that were begun [with a
+    /// name](Self::create_with_name) are open no longer.
     ///
     /// # Errors
     ///
@@ -136,8 +146,8 @@ impl AtomicFile {
         if target.is_some() {
             file.sync_all()?;
         }
-        let is_named = target.as_ref().is_some_and(|pending| pending.temporary.is_some());
-        Ok(WrittenFile { file: (!is_named).then_some(file), target })
+        let stays_open = target.as_ref().is_some_and(|pending| pending.stays_open);
+        Ok(WrittenFile { file: stays_open.then_some(file), target })
     }
 
     /// Puts the contents in their place, once they are on the disk.
@@ -153,7 +163,7 @@ impl AtomicFile {
 /// The new contents of a file, all of them on the disk, that are not in its place yet: see [`AtomicFile`].
 #[derive(Debug)]
 pub struct WrittenFile {
-    /// The contents, where they have no name.
+    /// The contents, if they are open.
     file: Option<File>,
     target: Option<PendingFile>,
 }
@@ -171,7 +181,7 @@ impl WrittenFile {
     ///
     /// Whatever the system refuses; then the file is as it was.
     pub fn finish(self) -> io::Result<()> {
-        let Some(PendingFile { temporary, path, replace }) = self.target else { return Ok(()) };
+        let Some(PendingFile { temporary, path, replace, .. }) = self.target else { return Ok(()) };
         match (temporary, self.file) {
             (Some(temporary), _) => {
                 let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
@@ -216,17 +226,24 @@ impl PathKind {
     }
 }
 
-/// A new file with the permissions that the process gives to any new file, and its temporary name if it needs
-/// one.
-fn begin(folder: &Path) -> io::Result<BegunFile> {
+/// A new file in the folder of a path, with the permissions that the process gives to any new file, and its
+/// temporary name if it needs one.
+fn begin(path: &Path, folder: &Path) -> io::Result<BegunFile> {
     #[cfg(target_os = "linux")]
-    if let Some(file) = nameless::create(folder) {
-        return Ok((file, None));
+    {
+        if let Some(file) = nameless::create(folder) {
+            return Ok((file, None));
+        }
+        if let Some((file, name)) = nameless::create_with_name(path) {
+            return Ok((file, Some(TempPath::try_from_path(name)?)));
+        }
     }
+    #[cfg(not(target_os = "linux"))]
+    let _ = path;
     begin_with_name(folder)
 }
 
-/// The same, always with a temporary name.
+/// The same, always with a temporary name, of random letters.
 fn begin_with_name(folder: &Path) -> io::Result<BegunFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".jbt-");

@@ -4,8 +4,8 @@ use smallvec::SmallVec;
 
 use crate::boxes::Divisible;
 
-/// Planes of attributes, one for each channel, as [`Field::all`] takes them: in no memory of their own if they
-/// are as few as most models have.
+/// Planes of attributes, one for each channel, as [`Field::all`] takes them: in no memory of their own if
+/// they are as few as most models have.
 pub(crate) type AttributePlanes<'a> = SmallVec<[&'a mut [f32]; 8]>;
 
 /// The cost of the field at a point: for counters, and to choose the size of bricks.

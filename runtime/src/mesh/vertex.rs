@@ -1,6 +1,7 @@
 //! Vertices: their start, their pull onto the surface, and their attributes. Brick by brick: the data stays
 //! in the cache, and each evaluation takes all vertices of a brick, in the brick's region.
 
+mod again;
 pub(super) mod batch;
 mod bracket;
 mod margin;

@@ -30,6 +30,27 @@ pub(super) fn create(folder: &Path) -> Option<File> {
     fs::symlink_metadata(descriptor(&file)).is_ok().then_some(file)
 }
 
+/// A new file with the temporary name of a path, where files need one: locked, as long as it is open. `None`
+/// where no such name can be had.
+pub(super) fn create_with_name(path: &Path) -> Option<(File, PathBuf)> {
+    for name in temporary_names(path) {
+        let create = || File::options().read(true).write(true).create_new(true).open(&name);
+        let file = match create() {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && remove_if_left(&name) => create().ok(),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => None,
+            created => Some(created.ok()?),
+        };
+        // Before the lock somebody may take it for one that is left over. Where files cannot be locked,
+        // nobody does.
+        let is_ours =
+            |file: &File| !matches!(file.try_lock(), Err(TryLockError::WouldBlock)) && is_at(file, &name);
+        if let Some(file) = file.filter(is_ours) {
+            return Some((file, name));
+        }
+    }
+    None
+}
+
 /// Gives the file its name.
 ///
 /// # Errors
@@ -135,6 +156,23 @@ mod tests {
         drop(theirs);
         remove_left(&path);
         assert_eq!(names(folder.path()), ["a.glb"]);
+    }
+
+    #[test]
+    fn a_name_that_is_needed_is_one_that_the_next_run_knows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.glb");
+        let (file, name) = create_with_name(&path).unwrap();
+        let (other, another) = create_with_name(&path).unwrap();
+        remove_left(&path);
+        assert_eq!(names(folder.path()), [".jbt-0-a.glb", ".jbt-1-a.glb"], "both are in use");
+        // Whoever is killed leaves the name and no lock.
+        drop(file);
+        let (_again, taken) = create_with_name(&path).unwrap();
+        assert_eq!(taken, name);
+        drop(other);
+        remove_left(&path);
+        assert!(name.exists() && !another.exists());
     }
 
     #[test]

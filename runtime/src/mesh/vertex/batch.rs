@@ -6,10 +6,10 @@ use super::super::field::Field;
 use super::super::options::Options;
 use super::super::pull::{LANES, VertexLanes, VertexPlanes};
 use super::super::sample::{BrickSamples, corners};
+use super::again::SecondLooks;
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
 use super::side::SharpVertex;
-use super::suspect::Suspects;
 use crate::boxes::Box3;
 
 /// Counts of the work at vertices.
@@ -87,7 +87,7 @@ pub(super) struct VertexBatch {
     /// Vertices at jumps of the field.
     pub(super) jumped: Vec<usize>,
     /// Vertices that get a second look.
-    pub(super) suspects: Suspects,
+    pub(super) suspects: SecondLooks,
     /// Crossed edges at these.
     pub(super) crossed: CrossedEdges,
 }

@@ -14,8 +14,8 @@
 
 use super::super::field::Field;
 use super::super::pull::{LANES, VertexLanes, VertexPlanes, squares};
+use super::again::{Again, SecondLooks, VertexTests};
 use super::batch::{Done, VertexBatch, VertexSource, lane, lanes};
-use super::bracket::BracketPoints;
 use super::seed::SeedGroup;
 use super::settle::{Stray, VertexPlace, is_far, settle};
 use super::sheet::{Sheet, Start};
@@ -28,16 +28,6 @@ const EXCESS: f32 = 1.5;
 /// The cosine of the angle, about 30 degrees, from which on a gradient is far from the rise of the field in
 /// its cell.
 const ASTRAY: f32 = 0.85;
-
-/// The results of the tests of vertices, as 1 or 0 each.
-struct VertexTests {
-    /// Far from the surface.
-    far: [u32; LANES],
-    /// The gradient does not explain the spread of the field in the cell, or is NaN.
-    odd: [u32; LANES],
-    /// The gradient is far from the rise of the field in the cell.
-    turned: [u32; LANES],
-}
 
 /// The tests of vertices.
 #[inline(always)]
@@ -77,27 +67,6 @@ fn judge_all(
     }
 }
 
-/// Room for what is found about suspects.
-#[derive(Default)]
-pub(super) struct Suspects {
-    verdicts: Vec<(usize, VertexTests)>,
-    /// The suspects, each with whether it is far from the surface.
-    found: Vec<(usize, bool)>,
-    sheets: Vec<Sheet>,
-    again: Vec<Again>,
-    /// The field and what belongs to it where it is asked for again.
-    points: BracketPoints,
-    attributes: Vec<f32>,
-}
-
-/// A second evaluation: the vertex, its position, and the point to evaluate.
-struct Again {
-    vertex: usize,
-    position: [f32; 3],
-    asked: [f32; 3],
-    normal: Option<[f32; 3]>,
-}
-
 impl VertexBatch {
     /// Moves suspects to their places, and evaluates everything there again.
     pub(super) fn look_again<F: Field>(
@@ -113,7 +82,7 @@ impl VertexBatch {
         }
         self.crossed.clear(source.bricks.table_len());
         let mut suspects = std::mem::take(&mut self.suspects);
-        let Suspects { found, sheets, again, .. } = &mut suspects;
+        let SecondLooks { found, sheets, again, .. } = &mut suspects;
         sheets.clear();
         sheets.extend(found.iter().map(|&(vertex, _)| self.sheet(source, brick, vertex)));
         let edges = |sheet: usize| (sheets[sheet].numbers(), !found[sheet].1);
@@ -154,7 +123,7 @@ impl VertexBatch {
 
     /// Finds the suspects, and records vertices with doubtful normals.
     fn find_suspects(&mut self, iso: f32) {
-        let Suspects { verdicts, found, .. } = &mut self.suspects;
+        let SecondLooks { verdicts, found, .. } = &mut self.suspects;
         verdicts.clear();
         found.clear();
         judge_all(iso, &self.groups, &self.values, &self.gradient, verdicts);
@@ -192,7 +161,7 @@ impl VertexBatch {
         &mut self,
         source: &VertexSource<'_, F>,
         brick: usize,
-        Suspects { again, points, attributes, .. }: &mut Suspects,
+        SecondLooks { again, points, attributes, .. }: &mut SecondLooks,
     ) -> Result<(), F::Error> {
         let count = again.len();
         if count == 0 {
