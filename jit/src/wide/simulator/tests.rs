@@ -5,7 +5,10 @@ use std::sync::Arc;
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
-use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verify};
+use jbt_ir::{
+    Domain as _, Entity, FunctionBuilder, Level, Op, Selection, Table, Tables, Type, Value, Verified,
+    interpret, verify,
+};
 use jbt_testkit::bits::assert_same;
 
 use super::machine::MachineFault;
@@ -128,6 +131,73 @@ fn simulated_code_has_the_bits_of_the_reference_and_of_the_cpu() {
     println!("runs of the CPU itself, by level: {ran:?}");
     for level in Level::ALL.into_iter().filter(|&level| level > Level::Baseline) {
         assert_eq!(ran[level as usize] > 0, level.is_available(), "{level}");
+    }
+}
+
+/// All ops of one operand, each with an output of reals: bits are two outputs, since as one real a NaN may be
+/// another one.
+fn ops_of_one_operand() -> Verified {
+    let mut b = FunctionBuilder::new("ops", &["x"]);
+    let x = b.input(0);
+    let mut outputs: Vec<(String, Value)> = Vec::new();
+    for &op in Op::ALL.iter().filter(|op| op.operands().len() == 1 && !op.is_slope()) {
+        let operand = match op.operands()[0] {
+            Type::Real => x,
+            Type::Mask => {
+                let quarter = b.constant(0.25);
+                b.lt(x, quarter)
+            }
+            Type::Bits => b.to_bits(x),
+        };
+        let value = b.op(op, &[operand]);
+        let reals = match op.result() {
+            Type::Real => vec![value],
+            Type::Mask => {
+                let (one, zero) = (b.constant(1.0), b.constant(-0.0));
+                vec![b.select(value, one, zero)]
+            }
+            Type::Bits => {
+                let (low, high, by) =
+                    (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));
+                let halves = [b.bit_and(value, low), b.shr(value, by)];
+                halves.map(|half| b.bit_or(half, high)).map(|half| b.from_bits(half)).to_vec()
+            }
+        };
+        outputs.extend(reals.into_iter().enumerate().map(|(n, real)| (format!("{}{n}", op.name()), real)));
+    }
+    verify(run_pipeline(b.finish(&outputs), PIPELINE, &mut |_, _| {})).expect("it obeys the rules")
+}
+
+/// Inputs of each op, evenly over all 2^32 bit patterns.
+const INPUTS: u32 = 1 << 20;
+/// Inputs of one run: the machine ends code that takes too many steps.
+const AT_ONCE: usize = 1 << 12;
+
+#[test]
+fn simulated_ops_of_one_operand_have_the_bits_of_the_reference() {
+    let function = ops_of_one_operand();
+    let (tables, names) = (Tables::default(), &function.function().outputs);
+    let selection = Selection::new(function.function(), &tables);
+    let wide = Wide { vectors: None, pieces: None, check: Check::Registers };
+    let blobs = [Level::Avx2, Level::Avx512Vl, Level::Avx512]
+        .map(|level| (level, wide.emit(&function, level).expect("it is short").blocks));
+    for first in (0..INPUTS).step_by(AT_ONCE) {
+        // Each upper part once, and lower parts that are not round.
+        let input = |n: u32| f32::from_bits(n << 12 | n.wrapping_mul(0x9e37_79b1) >> 20);
+        let inputs: Vec<f32> = (first..first + AT_ONCE as u32).map(input).collect();
+        let mut expected = vec![Vec::with_capacity(AT_ONCE); names.len()];
+        for &x in &inputs {
+            let answers = interpret::run_selected(&function, &tables, &selection, &mut Scalar, &[x]);
+            expected.iter_mut().zip(answers).for_each(|(plane, answer): (&mut Vec<f32>, f32)| {
+                plane.push(answer);
+            });
+        }
+        let inputs = [inputs];
+        let call = Call { inputs: &inputs, outputs: names.len(), tables: &[] };
+        for (level, blob) in &blobs {
+            let simulated = run(blob, &call).unwrap_or_else(|fault| panic!("{fault}"));
+            assert_same(&expected, &simulated, &format!("{level}, inputs from {first}"));
+        }
     }
 }
 
