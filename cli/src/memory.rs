@@ -33,7 +33,6 @@ const STACK: usize = 1 << 20;
 /// From so many bytes on, what is asked for has pages of its own, and the system has them again once it is
 /// freed. By itself glibc raises this number with each such part that is freed, up to 32 MiB: what passes
 /// leave behind then stays with the process.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
 const OWN_PAGES: i32 = 4 << 20;
 /// The exit code of a limit.
 const CODE: u8 = 3;
@@ -58,23 +57,37 @@ pub fn prepare() {
     let addresses = limits.lines().find(|line| line.starts_with("Max address space"));
     if addresses.is_some_and(|line| !line.contains("unlimited  ")) {
         take_stack();
+        share_heap();
     }
 }
 
-/// Large parts go back to the system.
+/// Sets a parameter of the system's allocator.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-fn give_back() {
+fn set(parameter: i32, value: i32) {
     unsafe extern "C" {
         fn mallopt(parameter: i32, value: i32) -> i32;
     }
-    const M_MMAP_THRESHOLD: i32 = -3;
     // SAFETY: it is glibc's, with this signature, and there is one thread. A refusal changes nothing.
-    unsafe { mallopt(M_MMAP_THRESHOLD, OWN_PAGES) };
+    unsafe { mallopt(parameter, value) };
 }
 
-/// Large parts go back to the system, by its own rule.
+/// Other allocators have rules of their own.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-const fn give_back() {}
+const fn set(_: i32, _: i32) {}
+
+/// Large parts go back to the system.
+fn give_back() {
+    const M_MMAP_THRESHOLD: i32 = -3;
+    set(M_MMAP_THRESHOLD, OWN_PAGES);
+}
+
+/// All threads take from one heap. By itself glibc reserves 64 MiB of addresses for each thread; where it does
+/// not get them, each request of such a thread becomes a mapping of its own, after four tries: seconds in
+/// place of a fifth of one.
+fn share_heap() {
+    const M_ARENA_MAX: i32 = -8;
+    set(M_ARENA_MAX, 1);
+}
 
 /// Lets the system find pages for the stack.
 #[inline(never)]
