@@ -12,12 +12,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::Builder;
 
 use jbt::diagnostic::escape;
 
 use crate::arguments::MeshArguments;
 use crate::failure::Failure;
 use crate::output::{plural, warn};
+use crate::threads::clipped;
 
 /// What stands for the number of a frame, or the name of a part.
 pub const BRACES: &str = "{}";
@@ -57,17 +59,19 @@ pub fn run(arguments: &MeshArguments, quiet: bool) -> Result<(), Failure> {
     }
     let program = std::env::current_exe().map_err(|error| Failure::io("find", "this program", error))?;
     let (next, told) = (AtomicUsize::new(0), Mutex::new(FramesTold::default()));
-    std::thread::scope(|scope| {
-        for _ in 0..usize::from(arguments.jobs).min(left.len()) {
-            scope.spawn(|| {
-                while let Some(frame) = left.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let result = command(&program, frame).output();
-                    if let Ok(mut told) = told.lock() {
-                        told.tell(&numbered(scene, frame), result);
-                    }
-                }
-            });
+    let work = || {
+        while let Some(frame) = left.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let result = command(&program, frame).output();
+            if let Ok(mut told) = told.lock() {
+                told.tell(&numbered(scene, frame), result);
+            }
         }
+    };
+    let jobs = clipped(arguments.jobs.into(), "--jobs", "processes").min(left.len());
+    std::thread::scope(|scope| {
+        // Where a thread cannot be had, those that are there do its work, and so does this one.
+        (1..jobs).take_while(|_| Builder::new().spawn_scoped(scope, work).is_ok()).for_each(drop);
+        work();
     });
     let told = told.into_inner().unwrap_or_default();
     match told.code {

@@ -12,7 +12,7 @@ impl Threads {
     /// Starts them. Where not all of them can be had there are fewer, and where there are none the calling
     /// thread does the work; people are told.
     pub fn new(threads: Option<u16>) -> Self {
-        Self(threads.and_then(|threads| started(clipped(threads.into(), "--threads"))))
+        Self(threads.and_then(|threads| started(clipped(threads.into(), "--threads", "threads"))))
     }
 
     /// How many there are.
@@ -34,7 +34,7 @@ impl Threads {
 pub fn run_all<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let told = std::env::var("RAYON_NUM_THREADS").ok().and_then(|words| words.parse::<usize>().ok());
     let wanted = match told.filter(|&told| told > 0) {
-        Some(told) => clipped(told, "RAYON_NUM_THREADS"),
+        Some(told) => clipped(told, "RAYON_NUM_THREADS", "threads"),
         None => std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS),
     };
     match started(wanted) {
@@ -48,10 +48,10 @@ pub fn run_all<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// A number of threads that makes sense.
-fn clipped(wanted: usize, who: &str) -> usize {
+/// A number of threads or processes that makes sense.
+pub fn clipped(wanted: usize, who: &str, what: &str) -> usize {
     if wanted > MAX_THREADS {
-        warn(&format!("{who} asks for {wanted} threads; {MAX_THREADS} do the work"));
+        warn(&format!("{who} asks for {wanted} {what}; {MAX_THREADS} do the work"));
     }
     wanted.min(MAX_THREADS)
 }

@@ -85,6 +85,8 @@ fn sequences_are_meshed_frame_by_frame_and_go_on() {
     let again = folder.jbt(&[&start[..], &colored].concat()).code(1);
     assert!(again.stderr().contains("4 frames are newer"), "{}", again.stderr());
     assert_eq!(again.stdout(), "");
+    let many = folder.jbt(&[&start[..], &["--jobs", "65535", "--force"]].concat()).code(1);
+    assert!(many.stderr().contains("--jobs asks for 65535 processes; 256 do the work"), "{}", many.stderr());
     folder.jbt(&["mesh", "f_{}.csv", "-o", "out.glb", "--radius", "0.4"]).code(2);
     folder.jbt(&["mesh", "g_{}.csv", "-o", "out_{}.glb", "--radius", "0.4"]).code(4);
     let missing = folder.jbt(&["mesh", "f_8.csv", "-o", "o.glb", "--radius", "0.4", "--color-by", "cold"]);
