@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Blobs overlap alike at any number, and there are two cells between neighbours, so the surface grows with
-//! their number. LARGEST is the largest number of blobs, 1,000,000 as a rule, which takes 1.6 GB. Each row
+//! their number. LARGEST is the largest number of blobs, 1,000,000 as a rule, which takes 1 GB. Each row
 //! is a process of its own, whose peak of memory (`VmHWM`, Linux) it tells. Everything from the blobs on
 //! counts: tree, check, code, mesh with normals and colours.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
