@@ -81,9 +81,9 @@ fn give_back() {
     set(M_MMAP_THRESHOLD, OWN_PAGES);
 }
 
-/// All threads take from one heap. By itself glibc reserves 64 MiB of addresses for each thread; where it does
-/// not get them, each request of such a thread becomes a mapping of its own, after four tries: seconds in
-/// place of a fifth of one.
+/// All threads take from one heap. By itself glibc reserves 64 MiB of addresses for each thread; where it
+/// does not get them, each request of such a thread becomes a mapping of its own, after four tries: seconds
+/// in place of a fifth of one.
 fn share_heap() {
     const M_ARENA_MAX: i32 = -8;
     set(M_ARENA_MAX, 1);
