@@ -6,8 +6,9 @@
 mod common;
 
 use common::{SPICE, check, finish, spicy_plane};
-use jbt_ir::{Domain, FunctionBuilder, Op, Tables, Type};
+use jbt_ir::{Domain, FunctionBuilder, Op, Tables};
 use jbt_jit::{CompileError, Cranelift};
+use jbt_testkit::ops::{operand, reals};
 
 /// All triples of spicy numbers, then random ones, as three planes.
 fn triples() -> Vec<Vec<f32>> {
@@ -25,39 +26,6 @@ fn triples() -> Vec<Vec<f32>> {
         plane.extend(spicy_plane(seed, 4096));
     }
     planes
-}
-
-/// An operand of each type made of an input plane.
-fn operand(b: &mut FunctionBuilder, plane: usize, type_: Type) -> jbt_ir::Value {
-    let real = b.input(plane);
-    match type_ {
-        Type::Real => real,
-        Type::Mask => {
-            let zero = b.constant(0.25);
-            b.lt(real, zero)
-        }
-        Type::Bits => b.to_bits(real),
-    }
-}
-
-/// The op's result as reals.
-fn as_outputs(b: &mut FunctionBuilder, value: jbt_ir::Value, type_: Type) -> Vec<jbt_ir::Value> {
-    match type_ {
-        Type::Real => vec![value],
-        Type::Mask => {
-            let (one, zero) = (b.constant(1.0), b.constant(-0.0));
-            vec![b.select(value, one, zero)]
-        }
-        // Bits that happen to be a NaN may come back as another one when compared as reals: look at the
-        // halves.
-        Type::Bits => {
-            let (low, high, by) =
-                (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));
-            let low = b.bit_and(value, low);
-            let up = b.shr(value, by);
-            [low, up].map(|half| b.bit_or(half, high)).map(|half| b.from_bits(half)).to_vec()
-        }
-    }
 }
 
 #[test]
@@ -80,7 +48,7 @@ fn every_op_has_the_bits_of_the_reference() {
                 args[1] = b.bits_constant(amount);
             }
             let result = b.op(op, &args);
-            let outputs = as_outputs(&mut b, result, op.result());
+            let outputs = reals(&mut b, result, op.result());
             check(&finish(b, &outputs), &Tables::default(), triples());
         }
     }

@@ -33,7 +33,7 @@ const PIXELS_OFF: f64 = 0.02;
 const BLOBS: usize = 512;
 const PICTURE: u32 = 512;
 
-fn pool(options: Options) -> rayon::ThreadPool {
+pub(super) fn pool(options: Options) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be made")
 }
 
@@ -110,12 +110,17 @@ fn check(tree: &CheckedTree, image: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
+/// The octopus.
+pub(super) fn octopus() -> CheckedTree {
+    let text = include_bytes!("../../../examples/hero.jbt");
+    let model = jbt::text::parse(text, &jbt::text::Options::default()).expect("the scene is right");
+    model.check().expect("the scene is right")
+}
+
 /// A picture of the octopus in light, as the command line makes it without options but `--quality`: draft and
 /// good, on one thread and on two. A renderer is kept, so nothing is compiled and no file is written.
 pub(super) fn hero(options: Options) -> Vec<ResultRow> {
-    let text = include_bytes!("../../../examples/hero.jbt");
-    let model = jbt::text::parse(text, &jbt::text::Options::default()).expect("the scene is right");
-    let tree = model.check().expect("the scene is right");
+    let tree = octopus();
     let renderer = Renderer::new(&Compiler::new(), &tree).expect("the scene compiles");
     let mut rows = Vec::new();
     let of = [["draft, one thread", "draft, two"], ["good, one thread", "good, two"]];

@@ -10,6 +10,7 @@ use serde_json::json;
 use super::contest::{Contest, Contestant};
 use super::mesh::{MeshTask, task_of_blobs, task_of_particles};
 use super::options::Options;
+use super::picture::{octopus, pool};
 use super::report::ResultRow;
 use super::unions;
 
@@ -25,7 +26,7 @@ pub(super) fn threads(options: Options) -> Vec<ResultRow> {
     let one = Options { threads: 1, ..options };
     let [fine, finest] = if options.quick { HERO_IN_SHORT } else { HERO };
     let particles = if options.quick { 10_000 } else { 583_000 };
-    let hero = read_hero();
+    let hero = octopus();
     vec![
         of_blobs("mesh-512", [options, one].map(|options| task_of_blobs(512, options)), options),
         of_blobs("particles", [options, one].map(|options| task_of_particles(particles, options)), options),
@@ -55,7 +56,7 @@ fn of_blobs(of: &'static str, [many, one]: [MeshTask; 2], options: Options) -> R
 /// The union of 1,024 spheres.
 fn of_spheres(options: Options) -> ResultRow {
     let tree = unions::primitives();
-    let [many, one] = [options.threads, 1].map(pool);
+    let [many, one] = [options, Options { threads: 1, ..options }].map(pool);
     let mut triangles = 0;
     let mut contest = Contest::new();
     let see = |made: &jbt::Polygonized| {
@@ -84,7 +85,7 @@ fn of_hero(
         }
         made.mesh.triangles.len()
     };
-    let [many, one] = [options.threads, 1].map(pool);
+    let [many, one] = [options, Options { threads: 1, ..options }].map(pool);
     let (mut contest, mut triangles) = (Contest::new(), 0);
     let see = |&made: &usize| {
         triangles = made;
@@ -115,15 +116,4 @@ fn row(
         standings: contest.run(options.effort()),
         extra: vec![("threads", json!(options.threads)), ("triangles", json!(triangles))],
     }
-}
-
-fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be made")
-}
-
-/// The octopus.
-fn read_hero() -> CheckedTree {
-    let text = include_bytes!("../../../examples/hero.jbt");
-    let model = jbt::text::parse(text, &jbt::text::Options::default()).expect("the scene is right");
-    model.check().expect("the scene is right")
 }

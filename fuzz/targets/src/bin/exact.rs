@@ -25,6 +25,7 @@ use jbt::internals::ir::op::{Any, apply};
 use jbt::internals::ir::pass::{PIPELINE, run_pipeline};
 use jbt::internals::ir::{Domain as _, FunctionBuilder, Level, Op, Tables, Type, Value, verify};
 use jbt_testkit::bits::same;
+use jbt_testkit::ops::{operand, reals};
 
 /// Inputs that are kept at once.
 const BATCH: usize = 1 << 14;
@@ -192,38 +193,17 @@ fn subjects(op: Op) -> Vec<Subject> {
 
 fn programs(op: Op, shift: u32) -> Vec<BoundProgram> {
     let mut b = FunctionBuilder::new(op.name(), &["a", "b", "c"]);
-    let mut operands: Vec<Value> = Vec::new();
-    for (plane, &type_) in op.operands().iter().enumerate() {
-        let real = b.input(plane);
-        operands.push(match type_ {
-            Type::Real => real,
-            Type::Mask => {
-                let quarter = b.constant(0.25);
-                b.lt(real, quarter)
-            }
-            Type::Bits => b.to_bits(real),
-        });
-    }
+    let mut operands: Vec<Value> =
+        (0..).zip(op.operands()).map(|(plane, &type_)| operand(&mut b, plane, type_)).collect();
     if is_shift(op) {
         operands[1] = b.bits_constant(shift);
     }
     let value = b.op(op, &operands);
-    let outputs = match op.result() {
-        Type::Real => vec![value],
-        Type::Mask => {
-            let (one, zero) = (b.constant(1.0), b.constant(-0.0));
-            vec![b.select(value, one, zero)]
-        }
-        Type::Bits => {
-            // As a real, bits that are a NaN may be another one: halves never are.
-            let (low, high, by) =
-                (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));
-            let (low, up) = (b.bit_and(value, low), b.shr(value, by));
-            [low, up].map(|half| b.bit_or(half, high)).map(|half| b.from_bits(half)).to_vec()
-        }
-    };
-    let outputs: Vec<(String, Value)> =
-        outputs.into_iter().enumerate().map(|(place, value)| (format!("o{place}"), value)).collect();
+    let outputs: Vec<(String, Value)> = reals(&mut b, value, op.result())
+        .into_iter()
+        .enumerate()
+        .map(|(place, value)| (format!("o{place}"), value))
+        .collect();
     let function = run_pipeline(b.finish(&outputs), PIPELINE, &mut |_, _| {});
     let function = Arc::new(verify(function).expect("passes keep the rules"));
     let mut programs = Vec::new();

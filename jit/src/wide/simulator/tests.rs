@@ -6,10 +6,10 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{
-    Domain as _, Entity, FunctionBuilder, Level, Op, Selection, Table, Tables, Type, Value, Verified,
-    interpret, verify,
+    Entity, FunctionBuilder, Level, Op, Selection, Table, Tables, Value, Verified, interpret, verify,
 };
 use jbt_testkit::bits::assert_same;
+use jbt_testkit::ops::{operand, reals};
 
 use super::machine::MachineFault;
 use super::memory::Call;
@@ -134,35 +134,14 @@ fn simulated_code_has_the_bits_of_the_reference_and_of_the_cpu() {
     }
 }
 
-/// All ops of one operand, each with an output of reals: bits are two outputs, since as one real a NaN may be
-/// another one.
+/// All ops of one operand, each with an output or two of reals.
 fn ops_of_one_operand() -> Verified {
     let mut b = FunctionBuilder::new("ops", &["x"]);
-    let x = b.input(0);
     let mut outputs: Vec<(String, Value)> = Vec::new();
     for &op in Op::ALL.iter().filter(|op| op.operands().len() == 1 && !op.is_slope()) {
-        let operand = match op.operands()[0] {
-            Type::Real => x,
-            Type::Mask => {
-                let quarter = b.constant(0.25);
-                b.lt(x, quarter)
-            }
-            Type::Bits => b.to_bits(x),
-        };
+        let operand = operand(&mut b, 0, op.operands()[0]);
         let value = b.op(op, &[operand]);
-        let reals = match op.result() {
-            Type::Real => vec![value],
-            Type::Mask => {
-                let (one, zero) = (b.constant(1.0), b.constant(-0.0));
-                vec![b.select(value, one, zero)]
-            }
-            Type::Bits => {
-                let (low, high, by) =
-                    (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));
-                let halves = [b.bit_and(value, low), b.shr(value, by)];
-                halves.map(|half| b.bit_or(half, high)).map(|half| b.from_bits(half)).to_vec()
-            }
-        };
+        let reals = reals(&mut b, value, op.result());
         outputs.extend(reals.into_iter().enumerate().map(|(n, real)| (format!("{}{n}", op.name()), real)));
     }
     verify(run_pipeline(b.finish(&outputs), PIPELINE, &mut |_, _| {})).expect("it obeys the rules")
