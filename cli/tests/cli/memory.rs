@@ -2,26 +2,32 @@
 #![cfg(target_os = "linux")]
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use crate::folder::Folder;
 
 const HERO: &str = include_str!("../../../examples/hero.jbt");
 
-/// Fifty limits of the address space, from 40 to 200 MB.
+/// What became of a command line in an address space of so many kilobytes.
+fn within(kilobytes: u32, folder: &Folder, arguments: &[&str]) -> Output {
+    let script = format!("ulimit -c 0; ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script, env!("CARGO_BIN_EXE_jbt")]).args(arguments).current_dir(folder.path("."));
+    shell.output().expect("a shell")
+}
+
+/// Fifty limits of the address space, from the smallest in which the program starts to 150 MB more; the small
+/// ones, in which a mesh ends in the middle, are close to each other.
 #[test]
 fn without_memory_there_is_code_3() {
     let folder = Folder::new().with("hero.jbt", HERO);
+    let starts = |kilobytes: &u32| within(*kilobytes, &folder, &["--version"]).status.success();
+    let least = (10_000..1_000_000).step_by(1000).find(starts).expect("a limit in which the program starts");
     let mut seen = [0; 2];
     for step in 0..50 {
-        let kilobytes = 40_000 + step * 160_000 / 49;
-        let script = format!("ulimit -c 0; ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
-        let ran = Command::new("sh")
-            .args(["-c", &script, env!("CARGO_BIN_EXE_jbt")])
-            .args(["-q", "mesh", "hero.jbt", "--resolution", "32", "-o", "hero.stl"])
-            .current_dir(folder.path("."))
-            .output()
-            .expect("a shell");
+        let kilobytes = least + 64 * step * step;
+        let ran =
+            within(kilobytes, &folder, &["-q", "mesh", "hero.jbt", "--resolution", "32", "-o", "hero.stl"]);
         let told = String::from_utf8_lossy(&ran.stderr);
         match ran.status.code() {
             Some(0) => seen[0] += 1,
