@@ -78,10 +78,9 @@ pub enum SupportSpace {
 /// What may be left out where it does not decide. It is told by the ranges of two probes over a box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Decision {
-    /// The guard, a table of one row; or operands that are rows.
+    /// The guard, a table of one row; or operands that are rows, which are left out together. One by one, a
+    /// [`RowContest`] leaves them out.
     pub table: Table,
-    /// Which rows of the table are an operand.
-    pub rows: DecidedRows,
     /// The probe of the operand's field: where operands are rows, of the largest or smallest among those that
     /// run.
     pub operand: usize,
@@ -159,19 +158,6 @@ pub struct ContestGroup {
     /// Whether the rows are operands. If not, the operand is part of the operator's row, whose table this is,
     /// and stays.
     pub rows: bool,
-}
-
-/// What an operand of a [`Decision`] is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum DecidedRows {
-    /// All rows: that of a guard.
-    All,
-    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
-    /// They are rows of a [`RowContest`] too.
-    Each {
-        /// Whether it needs no rows but those above and under it.
-        free: bool,
-    },
 }
 
 /// When an operand does not decide. `iso2` is [`PruneInfo::iso2`].

@@ -23,7 +23,7 @@ use jbt_ir::{Entity as _, Selection, Table, Tables};
 use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest, StepFields};
 use jbt_model::combine::Extreme;
 
-use super::decide::{MOST_ALONE, firsts};
+use super::decide::firsts;
 use super::lanes::{MetRow, RowInBox, RowRanges};
 use super::limit::{DifferenceLimit, cut};
 use super::ranges::ProbeRanges;
@@ -33,13 +33,15 @@ use crate::compiler::Compiler;
 use crate::error::EvalError;
 use crate::kernel::BoundKernel;
 
-/// A contest of fewer rows, over the whole model, is not worth a program. Rows that the range program tries
-/// ([`super::decide::Alone`]) do not count.
+/// A contest of fewer rows, over the whole model, is not worth a program.
 const FEWEST_ROWS: usize = 8;
 /// Fewer rows in a box are not looked at.
 const FEWEST_IN_BOX: usize = 3;
 /// The most contests of a model that have programs: those of the most rows.
 const MOST_CONTESTS: usize = 24;
+/// The most tables of a contest that have programs, one each: those of the most rows.
+const MOST_GROUPS: usize = 64;
+
 /// The contests of a model, with what runs their rows.
 pub(super) struct Contests {
     compiler: Compiler,
@@ -59,25 +61,25 @@ struct ContestRows {
 
 impl Contests {
     pub(super) fn new(compiler: &Compiler, info: &PruneInfo, tables: &Tables) -> Self {
-        let count = |group: &ContestGroup| tables.tables[group.table].len();
-        let is_tried = |group: &ContestGroup| {
-            count(group) <= MOST_ALONE && info.decisions.iter().any(|it| it.table == group.table)
-        };
         let rows = |contest: &RowContest| -> usize {
-            // To the range program a side of a difference is an operator like any other.
-            let counts =
-                |group: &&ContestGroup| group.rows && (contest.difference.is_some() || !is_tried(group));
-            contest.groups.iter().filter(counts).map(count).sum()
+            contest
+                .groups
+                .iter()
+                .filter(|group| group.rows)
+                .map(|group| tables.tables[group.table].len())
+                .sum()
         };
-        let mut worth: Vec<&RowContest> =
-            info.contests.iter().filter(|contest| rows(contest) >= FEWEST_ROWS).collect();
+        let mut has_probe = vec![false; tables.tables.len()];
+        info.decisions.iter().for_each(|decision| has_probe[decision.table.index()] = true);
+        let worth = info.contests.iter().filter_map(|contest| worth(contest, &has_probe, tables));
+        let mut worth: Vec<RowContest> = worth.filter(|contest| rows(contest) >= FEWEST_ROWS).collect();
         worth.sort_by_key(|contest| std::cmp::Reverse(rows(contest)));
         worth.truncate(MOST_CONTESTS);
-        let with_rows = |contest: &RowContest| ContestRows {
+        let with_rows = |contest: RowContest| ContestRows {
             groups: contest.groups.iter().map(|_| OnceLock::new()).collect(),
-            contest: contest.clone(),
             other: OnceLock::new(),
             trees: contest.groups.iter().map(|_| OnceLock::new()).collect(),
+            contest,
         };
         Self { compiler: compiler.clone(), all: worth.into_iter().map(with_rows).collect() }
     }
@@ -85,11 +87,6 @@ impl Contests {
     /// Whether no contest is worth it.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()
-    }
-
-    /// Whether the rows of a table meet in a contest.
-    pub(super) fn meet(&self, table: Table) -> bool {
-        self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.rows && group.table == table)
     }
 
     /// Of all rows of a table of many that meet in a contest, the positions of those that may win in a box,
@@ -182,6 +179,29 @@ impl Contests {
         }
         Ok(evaluations)
     }
+}
+
+/// A contest without the groups that are not worth a program; `None` if it needs those. What has a probe of
+/// its own ([`super::decide`]) needs no program: a table of a single row.
+fn worth(contest: &RowContest, has_probe: &[bool], tables: &Tables) -> Option<RowContest> {
+    let count = |group: &ContestGroup| tables.tables[group.table].len();
+    // To the probes, a side of a difference is an operator like any other.
+    let is_told =
+        |group: &ContestGroup| contest.difference.is_none() && has_probe[group.table.index()] && group.rows;
+    let mut groups: Vec<(usize, ContestGroup)> = contest.groups.iter().copied().enumerate().collect();
+    match contest.kind {
+        // To know what one row does, a step needs all those before it.
+        ContestKind::Steps(..) if groups.len() > MOST_GROUPS => return None,
+        ContestKind::Steps(..) => {}
+        ContestKind::All(_) => {
+            groups.retain(|(_, group)| count(group) > 1 || !is_told(group));
+            groups.sort_by_key(|(_, group)| std::cmp::Reverse(count(group)));
+            groups.truncate(MOST_GROUPS);
+            groups.sort_by_key(|&(place, _)| place);
+        }
+    }
+    let groups = groups.into_iter().map(|(_, group)| group).collect();
+    Some(RowContest { groups, ..contest.clone() })
 }
 
 /// The operands of a group in each box in which they may matter.

@@ -53,7 +53,6 @@ use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 
 use cull::Boxes;
-use decide::Alone;
 use program::RangeProgram;
 use ranges::{ProbeRanges, Ranges};
 use sharing::{PartSelection, Sharing};
@@ -235,8 +234,7 @@ impl Pruner {
     }
 
     /// For each active row of the region, the boxes in which it matters, a bit each. `probes` are the ranges
-    /// of the field and of all probes in these boxes, if they are known. Operands that are rows and meet in
-    /// no contest are handled by [`spared`](Self::spared).
+    /// of the field and of all probes in these boxes, if they are known.
     fn masks(
         &self,
         region: &Region,
@@ -276,32 +274,6 @@ impl Pruner {
         Ok(masks)
     }
 
-    /// For each active row of the region, the boxes in which it is an operand that does not decide, a bit
-    /// each, for at most [`MAX_SPARED`] boxes. Empty where the test would cost more than it saves.
-    fn spared(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        probes: ProbeRanges<'_>,
-    ) -> Result<Option<Vec<u32>>, EvalError> {
-        let selection = &*region.selection;
-        let is_met = |table| self.program.contests.meet(table);
-        let Some(alone) = Alone::new(&self.program.info, selection, is_met) else { return Ok(None) };
-        let mut spared = vec![0; selection.len()];
-        let lanes: [usize; MAX_SPARED] = std::array::from_fn(|lane| lane);
-        let mut parts: [Selection; MAX_PARTS] = Default::default();
-        let mut ranges = Ranges::new(&self.program.bound, boxes);
-        for run in alone.runs() {
-            let count = alone.selections(selection, run, &mut parts);
-            for (part, rows) in parts[..count].iter().enumerate() {
-                self.find(&mut ranges, rows, boxes.len())?;
-                let both = (probes, ranges.probes(&lanes[..boxes.len()]));
-                alone.spare((selection, self.program.info.iso2), run + part, both, &mut spared);
-            }
-        }
-        Ok(Some(spared))
-    }
-
     /// Appends the regions of some parts of a region; the probes have these ranges there.
     fn regions(
         &self,
@@ -310,28 +282,13 @@ impl Pruner {
         probes: Option<ProbeRanges<'_>>,
         regions: &mut Vec<Region>,
     ) -> Result<(), EvalError> {
-        for (index, boxes) in boxes.chunks(MAX_SPARED).enumerate() {
-            let probes = probes.map(|probes| probes.chunk(index, MAX_SPARED));
-            let spared = match probes {
-                Some(probes) => self.spared(region, boxes, probes)?,
-                None => None,
-            };
-            for (index, boxes) in boxes.chunks(MAX_PARTS).enumerate() {
-                let mut masks =
-                    self.masks(region, boxes, probes.map(|probes| probes.chunk(index, MAX_PARTS)))?;
-                for (mask, spared) in masks.iter_mut().zip(spared.iter().flatten()) {
-                    *mask &= !((spared >> (index * MAX_PARTS)) as u8);
-                }
-                region.narrow_by(boxes, masks, regions);
-            }
+        for (index, boxes) in boxes.chunks(MAX_PARTS).enumerate() {
+            let probes = probes.map(|probes| probes.chunk(index, MAX_PARTS));
+            region.narrow_by(boxes, self.masks(region, boxes, probes)?, regions);
         }
         Ok(())
     }
 }
-
-/// The most boxes in one test of operands that do not decide: one bit of a word each, and a multiple of
-/// [`MAX_PARTS`].
-const MAX_SPARED: usize = 32;
 
 /// The boxes of a point inside of a warp, whose ranges are probes.
 fn inner_boxes(probes: ProbeRanges<'_>, probe: usize) -> Boxes {

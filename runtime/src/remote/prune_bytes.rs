@@ -2,8 +2,8 @@
 
 use jbt_ir::{Entity as _, Function, InstKind, Rule, Store, Table, Value};
 use jbt_lower::prune_info::{
-    ContestDifference, ContestGroup, ContestKind, DecidedRows, Decision, DecisionKind, DifferenceSide,
-    PruneInfo, RowContest, StepFields, SupportSpace, TablePruneInfo,
+    ContestDifference, ContestGroup, ContestKind, Decision, DecisionKind, DifferenceSide, PruneInfo,
+    RowContest, StepFields, SupportSpace, TablePruneInfo,
 };
 use jbt_model::combine::Extreme;
 
@@ -19,8 +19,6 @@ const DECISIONS: [DecisionKind; 4] = [
 ];
 const STEPS: [StepFields; 2] = [StepFields::Plain, StepFields::Complements];
 const SIDES: [DifferenceSide; 2] = [DifferenceSide::Left, DifferenceSide::Right];
-const DECIDED: [DecidedRows; 3] =
-    [DecidedRows::All, DecidedRows::Each { free: false }, DecidedRows::Each { free: true }];
 
 /// Writes it.
 pub(super) fn write(info: &PruneInfo, writer: &mut ByteWriter) {
@@ -40,9 +38,8 @@ pub(super) fn write(info: &PruneInfo, writer: &mut ByteWriter) {
     writer.u32(info.probes as u32);
     writer.u32(info.iso2.to_bits());
     writer.count(info.decisions.len());
-    for Decision { table, rows, operand, node, kind } in &info.decisions {
+    for Decision { table, operand, node, kind } in &info.decisions {
         [table.index(), *operand, *node].into_iter().for_each(|index| writer.u32(index as u32));
-        writer.u8(place(&DECIDED, *rows));
         writer.u8(place(&DECISIONS, *kind));
     }
     writer.count(info.contests.len());
@@ -115,11 +112,10 @@ pub(super) fn read(reader: &mut ByteReader<'_>, function: &Function) -> Result<P
     }
     let iso2 = reader.f32()?;
     let mut decisions = Vec::new();
-    for _ in 0..reader.count(14)? {
+    for _ in 0..reader.count(13)? {
         let table = Table::new(reader.below(count)?);
         let (operand, node) = (reader.below(probes)?, reader.below(probes)?);
-        let (rows, kind) = (reader.one_of(&DECIDED)?, reader.one_of(&DECISIONS)?);
-        decisions.push(Decision { table, rows, operand, node, kind });
+        decisions.push(Decision { table, operand, node, kind: reader.one_of(&DECISIONS)? });
     }
     let bodies = Bodies::of(function);
     let mut contests = Vec::new();

@@ -10,7 +10,7 @@ use crate::bytes::{ByteReader, ByteWriter, FormatError, fingerprint};
 
 /// The first bytes, and the version of what follows.
 const WORD: &[u8; 8] = b"jbtshape";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Functions are longer than this in no model.
 const MAX_TEXT: usize = 256 << 20;
 

@@ -8,7 +8,7 @@ use super::parts::Guard;
 use super::{Emitter, OpenRow, Reduce, TableCode, Task};
 use crate::columns;
 use crate::mixing::{Operator, State, beyond};
-use crate::prune_info::{DecidedRows, DecisionKind};
+use crate::prune_info::DecisionKind;
 use crate::recipe::{Lead, Member, Owned, RowPlace, RowPlaces, RowStep};
 use crate::shape::{bounded, non_negative};
 use jbt_model::attribute::AttributeGroup;
@@ -130,8 +130,7 @@ impl Emitter<'_> {
         let mut results = self.builder.end_fold(&next);
         if let Some((extreme, _)) = extreme {
             let value = results.pop().expect("it is the last that was carried out");
-            let rows = DecidedRows::Each { free: self.is_free() };
-            self.probe_operand(table, rows, Some(DecisionKind::of(extreme)), value);
+            self.probe_operand(table, Some(DecisionKind::of(extreme)), value);
         }
         let reduce = self.reduces.last_mut().expect("folds belong to operators");
         reduce.state.replace(&results);

@@ -15,7 +15,7 @@ use jbt_ir::{Domain, FoldKind, Rule, Value};
 use super::Emitter;
 use super::parts::GuardStart;
 use crate::mixing::{Answer, GroupAnswer};
-use crate::prune_info::{DecidedRows, DecisionKind};
+use crate::prune_info::DecisionKind;
 use crate::recipe::{Owned, RowPlace};
 
 impl Emitter<'_> {
@@ -44,7 +44,7 @@ impl Emitter<'_> {
             numbers: false,
         });
         let groups = groups.collect();
-        self.probe_operand(table, DecidedRows::All, decision, field);
+        self.probe_operand(table, decision, field);
         self.answers.push(Answer { field, groups, contest: answer.contest });
     }
 

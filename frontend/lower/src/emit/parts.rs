@@ -4,7 +4,7 @@ use jbt_ir::{Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::names::SpaceId;
-use crate::prune_info::{DecidedRows, Decision, DecisionKind, RowContest};
+use crate::prune_info::{Decision, DecisionKind, RowContest};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 /// The field of a guard whose row is left out.
@@ -78,7 +78,6 @@ pub(super) struct Probe {
 /// A guard of an operator in progress, or rows that are its operands.
 pub(super) struct Operand {
     pub(super) table: Table,
-    pub(super) rows: DecidedRows,
     pub(super) kind: DecisionKind,
     pub(super) name: usize,
 }

@@ -11,7 +11,7 @@ use super::{Emitter, TableCode};
 use crate::instance::{InstanceId, SpaceId};
 use crate::mixing::Answer;
 use crate::prune_info::{
-    ContestDifference, ContestGroup, DecidedRows, Decision, DecisionKind, DifferenceSide, RowContest,
+    ContestDifference, ContestGroup, Decision, DecisionKind, DifferenceSide, RowContest,
 };
 use jbt_model::combine::{Extreme, ReduceCode};
 
@@ -35,8 +35,8 @@ impl Probes {
             return None;
         }
         let node = self.take(field);
-        for Operand { table, rows, kind, name } in self.operands.split_off(first) {
-            self.decisions.push(Decision { table, rows, operand: name, node, kind });
+        for Operand { table, kind, name } in self.operands.split_off(first) {
+            self.decisions.push(Decision { table, operand: name, node, kind });
         }
         Some(node)
     }
@@ -132,20 +132,14 @@ impl Emitter<'_> {
     }
 
     /// The field of an operand that a guard has carried out, or of the operands that are the rows of a table.
-    pub(super) fn probe_operand(
-        &mut self,
-        table: Table,
-        rows: DecidedRows,
-        decision: Option<DecisionKind>,
-        field: Value,
-    ) {
+    pub(super) fn probe_operand(&mut self, table: Table, decision: Option<DecisionKind>, field: Value) {
         if let (Some(kind), Some(probes)) = (decision, self.probes_here()) {
             let name = probes.take(field);
-            probes.operands.push(Operand { table, rows, kind, name });
+            probes.operands.push(Operand { table, kind, name });
         }
     }
 
-    /// What to keep of operands that are about to become rows, so that each may be left out while it is not
+    /// What to keep of operands that are about to become rows, so that they may be left out while they are not
     /// zero. Supports say nothing about formulas; of other rows they say enough.
     pub(super) fn decides_rows(&mut self, code: ReduceCode, member: InstanceId) -> Option<Extreme> {
         let extreme = match code {
@@ -153,14 +147,6 @@ impl Emitter<'_> {
             ReduceCode::Fold(_) | ReduceCode::Step(_) => return None,
         };
         (self.shapes.holds_formulas(member) && self.probes_here().is_some()).then_some(extreme)
-    }
-
-    /// Whether what is computed here needs no rows but those above and under it: nothing has been hoisted.
-    pub(super) fn is_free(&self) -> bool {
-        self.points.len() == 1
-            && self.kept.is_empty()
-            && self.kept_fields.is_empty()
-            && self.kept_points.is_empty()
     }
 
     /// The field of the operator whose operands have been met, and the rows of which one has won, if there
