@@ -1,5 +1,7 @@
 //! Work on as many threads as the command line says, or as many as there can be.
 
+use std::time::Duration;
+
 use jbt::limits::MAX_THREADS;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -67,7 +69,11 @@ fn started(wanted: usize) -> Option<ThreadPool> {
                 }
                 return Some(pool);
             }
-            Err(_) => threads /= 2,
+            Err(_) => {
+                threads /= 2;
+                // Those of the pool that did not come about count until they have ended; nobody says when.
+                std::thread::sleep(Duration::from_millis(5));
+            }
         }
     }
     warn("no thread can be started besides the first");

@@ -196,3 +196,20 @@ fn long_formulas_are_linear_and_deep_ones_do_not_recurse() {
     let too_long = parse((long.replace("x +", "x + x +")).as_bytes(), &Options::default()).unwrap_err();
     assert_eq!(too_long[0].message, "the expression has 100001 operations; it may have 100000");
 }
+
+/// Sixteen operations are a unit of work, and each use of a formula counts.
+#[test]
+fn the_work_of_a_point_has_a_limit() {
+    let most = jbt_ir::limits::MAX_POINT_WORK;
+    let scene = |uses: usize| {
+        let unit = format!("let unit = expression {{ x{} }}", " + y".repeat(16));
+        format!("jbt 1 {unit} union {{ {} }}", "use unit ".repeat(uses))
+    };
+    assert!(read(&scene(most)).check().is_ok());
+    let errors = read(&scene(most + 1)).check().unwrap_err();
+    let expected = format!(
+        "unfolded, a point of the model would take {} pieces of curves and parts of formulas; it may take {most}",
+        most + 1
+    );
+    assert_eq!(errors[0].message, expected);
+}
