@@ -73,3 +73,74 @@ fn a_signal_at_any_moment_leaves_whole_files_and_nothing_else() {
     );
     assert!(stopped > SIGNALS, "most signals come in time");
 }
+
+/// What takes long: all commands, on each engine where one may be chosen. A scene of a hundred thousand nodes
+/// is long read, checked and lowered.
+const LONG: [&str; 11] = [
+    "check large.jbt",
+    "convert large.jbt -o out.jbt",
+    "diff large.jbt other.jbt",
+    "count large.jbt",
+    "stats large.jbt",
+    "show large.jbt --stage schedule",
+    "mesh HERO -o out.stl --resolution 2000 --engine ENGINE",
+    "render HERO -o out.png --size 3000x3000 --quality best --engine ENGINE",
+    "sample HERO -o out.npy --resolution 1000 --engine ENGINE",
+    "contour HERO -o out.svg --resolution 20000 --engine ENGINE",
+    "mesh large.jbt -o out.stl --resolution 1000 --engine ENGINE",
+];
+
+/// A time in which a process has ended on any machine: figures are printed.
+const ENDED: Duration = Duration::from_secs(2);
+
+#[test]
+fn signals_stop_all_commands_on_all_engines() {
+    if !wanted() {
+        return;
+    }
+    let room = Room::new();
+    let mut rng = fastrand::Rng::with_seed(3);
+    let mut leaf = |_| {
+        let [x, y, z, radius] = std::array::from_fn(|_| rng.f64());
+        format!("point {{ at ({x} {y} {z}) radius {} }}\n", 0.01 + 0.05 * radius)
+    };
+    let leaves: String = (0..100_000).map(&mut leaf).collect();
+    for (name, more) in [("large.jbt", ""), ("other.jbt", "ring { ring_radius 1 radius 1 }")] {
+        fs::write(room.path(name), format!("jbt 1 sum {{ {leaves} {more} }}")).expect("a file");
+    }
+    let mut worst = Vec::new();
+    let mut rng = fastrand::Rng::with_seed(4);
+    for line in LONG {
+        let engines: &[&str] = if line.contains("ENGINE") { &["scalar", "lanes", "jit"] } else { &[""] };
+        for engine in engines {
+            let line = line.replace("HERO", &example("hero")).replace("ENGINE", engine);
+            let (mut longest, mut stopped) = (Duration::ZERO, 0);
+            for _ in 0..6 {
+                let before = room.names();
+                let mut work = room.command("env");
+                work.args(["--default-signal=INT", JBT, "--quiet"]).args(line.split(' '));
+                work.stdout(Stdio::null()).stderr(Stdio::null());
+                let mut child = work.spawn().expect("it runs");
+                sleep(Duration::from_millis(rng.u64(15..400)));
+                let sent = Instant::now();
+                // What has ended already is not there any more, and that is fine.
+                Command::new("kill").args(["-INT", &child.id().to_string()]).output().expect("kill runs");
+                let status = child.wait().expect("it ends");
+                if status.code() == Some(130) {
+                    longest = longest.max(sent.elapsed());
+                    stopped += 1;
+                    assert_eq!(room.names(), before, "{line}");
+                }
+                for name in room.names().into_iter().filter(|name| name.starts_with("out")) {
+                    fs::remove_file(room.path(&name)).expect("it is ours");
+                }
+            }
+            worst.push((longest, line.split(' ').next().expect("a command").to_owned(), *engine, stopped));
+            assert!(longest < ENDED, "{line}: {longest:?}");
+        }
+    }
+    worst.sort();
+    let stopped: u32 = worst.iter().map(|it| it.3).sum();
+    println!("{stopped} signals, of {} works; the slowest: {:?}", worst.len(), &worst[worst.len() - 4..]);
+    assert!(stopped > 60, "most signals come in time");
+}

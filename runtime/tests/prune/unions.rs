@@ -203,6 +203,35 @@ fn of_a_thousand_spheres_a_few_are_left() {
     assert!(left(&sums) < 32.0);
 }
 
+/// Formulas that have a table each: balls of distances that are measured in six ways along each axis.
+fn unlike() -> String {
+    let along = |form: usize, axis: char, at: f32| match form {
+        0 => format!("({axis} - {at})^2"),
+        1 => format!("abs({axis} - {at})^3"),
+        2 => format!("({axis} - {at})^2 + ({axis} - {at})^4"),
+        3 => format!("2 * ({axis} - {at}) * sin({axis} - {at})"),
+        4 => format!("max({axis} - {at}, 2 * ({at} - {axis}))^2"),
+        _ => format!("exp(({axis} - {at})^2) - 1"),
+    };
+    let mut rng = Rng::with_seed(1);
+    let formula = |form: usize| {
+        let [x, y, z] = place(&mut rng, 1.0);
+        let [x, y, z] = [along(form % 6, 'x', x), along(form / 6 % 6, 'y', y), along(form / 36, 'z', z)];
+        format!("expression {{ 0.6 - sqrt({x} + {y} + {z}) }} ")
+    };
+    (0..216).map(formula).collect()
+}
+
+#[test]
+fn of_formulas_that_are_unlike_a_few_are_left() {
+    assert!(left(&format!("jbt 1 union {{ {} }}", unlike())) < 32.0);
+    // Sixteen are fewer than are met one by one.
+    let few: String = unlike().split_inclusive("} ").take(16).collect();
+    assert!(left(&format!("jbt 1 union {{ {few} }}")) < 4.0);
+    let model = model(&format!("jbt 1 union {{ {} }}", unlike()));
+    (0..3).for_each(|shape| try_model(&model, shape, 12, &Tally::default()));
+}
+
 #[test]
 fn of_a_thousand_holes_those_that_cut_are_left() {
     let many = |operand: &dyn Fn([f32; 3]) -> String| -> String {

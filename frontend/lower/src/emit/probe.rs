@@ -139,8 +139,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// What to keep of operands that are about to become rows, so that they may be left out while they are not
-    /// zero. Supports say nothing about formulas; of other rows they say enough.
+    /// What to keep of operands that are about to become rows, so that they may be left out while they are
+    /// not zero. Supports say nothing about formulas; of other rows they say enough.
     pub(super) fn decides_rows(&mut self, code: ReduceCode, member: InstanceId) -> Option<Extreme> {
         let extreme = match code {
             ReduceCode::Choice(extreme) => extreme,
