@@ -216,16 +216,10 @@ impl Pruner {
     /// Ranges of the field and of all probes in boxes, by one counted run of the interval kernel.
     fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Ranges, EvalError> {
         let mut ranges = Ranges::new(&self.program.bound, boxes);
-        self.find(&mut ranges, rows, boxes.len())?;
-        Ok(ranges)
-    }
-
-    /// Computes the ranges of `count` boxes by one counted run of the interval kernel.
-    fn find(&self, ranges: &mut Ranges, rows: &Selection, count: usize) -> Result<(), EvalError> {
         ranges.find(&self.program.bound, rows)?;
-        self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
-        self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
-        Ok(())
+        self.counts.boxes.fetch_add(boxes.len() as u64, Ordering::Relaxed);
+        self.counts.primitives.fetch_add(self.evaluations(rows, boxes.len()), Ordering::Relaxed);
+        Ok(ranges)
     }
 
     /// The interval evaluations of distances to skeletons for some boxes.
