@@ -2,6 +2,8 @@
 
 use std::error::Error;
 
+use smallvec::SmallVec;
+
 /// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says
 /// so.
 ///
@@ -186,4 +188,37 @@ pub trait Divisible: Sync {
         boxes: &[Box3],
         parts: &mut Vec<Self::Region>,
     ) -> Result<(), Self::Error>;
+
+    /// The regions of the wanted ones of up to [`MAX_PARTS`] proper boxes inside a region, appended to `parts`.
+    /// `wants` is asked once about each box, in their order: by the box's index and its range. The result is
+    /// that of [`ranges`](Self::ranges) and then [`narrow`](Self::narrow); a field may share work of both.
+    ///
+    /// # Errors
+    /// Whatever the evaluation reports.
+    fn split(
+        &self,
+        region: &Self::Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Self::Region>,
+    ) -> Result<(), Self::Error> {
+        let mut ranges = [ANYTHING; MAX_PARTS];
+        let ranges = &mut ranges[..boxes.len()];
+        self.ranges(region, boxes, ranges)?;
+        let (_, kept) = wanted(boxes, &mut |lane| wants(lane, ranges[lane]));
+        if kept.is_empty() { Ok(()) } else { self.narrow(region, &kept, parts) }
+    }
+}
+
+/// A list of at most as many as there are parts.
+type OfParts<T> = SmallVec<[T; MAX_PARTS]>;
+
+/// The boxes that are wanted, by their indices, with these.
+pub(crate) fn wanted(
+    boxes: &[Box3],
+    wants: &mut dyn FnMut(usize) -> bool,
+) -> (OfParts<usize>, OfParts<Box3>) {
+    let lanes: OfParts<usize> = (0..boxes.len()).filter(|&lane| wants(lane)).collect();
+    let kept = lanes.iter().map(|&lane| boxes[lane]).collect();
+    (lanes, kept)
 }

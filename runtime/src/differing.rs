@@ -19,7 +19,7 @@ use jbt_model::query::Query;
 use jbt_model::tree::Tree;
 use jbt_text::field_difference;
 
-use crate::boxes::{ANYTHING, Box3, Divisible as _};
+use crate::boxes::{Box3, Divisible as _, Range};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
@@ -191,16 +191,13 @@ fn open_boxes(pruner: &Pruner, whole: Box3) -> Result<Vec<Box3>, EvalError> {
             smallest.push((number, bounds));
             continue;
         }
-        let mut ranges = vec![ANYTHING; parts.len()];
-        pruner.ranges(&region, &parts, &mut ranges)?;
-        let left: Vec<Box3> = parts
-            .into_iter()
-            .zip(ranges)
-            .filter(|(_, [_, high])| *high > 0.0)
-            .map(|(part, _)| part)
-            .collect();
-        let mut regions = Vec::new();
-        pruner.narrow(&region, &left, &mut regions)?;
+        let (mut left, mut regions) = (Vec::new(), Vec::new());
+        let mut wants = |part: usize, [_, high]: Range| {
+            let may_differ = high > 0.0;
+            left.extend(may_differ.then_some(parts[part]));
+            may_differ
+        };
+        pruner.split(&region, &parts, &mut wants, &mut regions)?;
         for (bounds, region) in left.into_iter().zip(regions) {
             count += 1;
             open.push(DifferingBox { bounds, region, number: count });

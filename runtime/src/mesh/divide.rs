@@ -3,9 +3,9 @@
 //! ```text
 //! boxes = [the whole lattice]
 //! until boxes are bricks:
-//!     for each box, in parallel:                      ranges of its (up to) 8 children
+//!     for each box, in parallel:                      ranges of its (up to) 8 children           (split)
 //!         low >= iso: all inside, dropped             high < iso: all outside, dropped
-//!         the others get regions of their own         (narrow)
+//!         the others get regions of their own
 //!     boxes = all children, in Morton order           their neighbours: children of their parents' neighbours
 //! ```
 //!
@@ -26,7 +26,7 @@ use super::options::Options;
 use super::report::Sides;
 use super::scope::DivisionScope;
 use super::stage::MeshStage;
-use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
+use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
@@ -183,9 +183,12 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     fn root(&self, size: usize, boxes: &mut BoxCounts) -> Result<BoxLevel<F::Region>, MeshError<F::Error>> {
         let bounds = box_of(self.axes, [0; 3], [size; 3]);
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
-        let ranges = self.ranges_of(&region, (&[bounds], &[[0; 3]]), size)?;
+        let mut range = [ANYTHING];
+        if !self.is_passed(&[0; 3], size) {
+            self.field.ranges(&region, &[bounds], &mut range).map_err(MeshError::Field)?;
+        }
         let level = BoxLevel { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
-        if !self.may_cross(&region, ranges[0], ([0; 3], size), boxes) {
+        if !self.may_cross(&region, range[0], ([0; 3], size), boxes) {
             return Ok(level);
         }
         self.check(1)?;
@@ -288,53 +291,31 @@ impl<F: Field> BrickDivider<'_, '_, F> {
             children.masks.push(0);
             return Ok(());
         }
-        let ranges = self.ranges_of(region, (&boxes[..count], &firsts[..count]), size)?;
-        let (mut mask, mut kept) = (0_u8, 0);
-        for n in 0..count {
-            if self.may_cross(region, ranges[n], (firsts[n], size), &mut children.boxes) {
-                mask |= 1 << which[n];
-                boxes[kept] = boxes[n];
-                kept += 1;
-            }
+        let BoxChildren { masks, regions, boxes: counts } = children;
+        let (before, mut mask, mut kept) = (regions.len(), 0_u8, 0);
+        let (boxes, firsts) = (&boxes[..count], &firsts[..count]);
+        let mut wants = |n: usize, range: Range| {
+            let range = if self.is_passed(&firsts[n], size) { ANYTHING } else { range };
+            let may_cross = self.may_cross(region, range, (firsts[n], size), counts);
+            mask |= u8::from(may_cross) << which[n];
+            kept += usize::from(may_cross);
+            may_cross
+        };
+        if firsts.iter().all(|first| self.is_passed(first, size)) {
+            (0..count).for_each(|n| _ = wants(n, ANYTHING));
+            self.field.narrow(region, boxes, regions).map_err(MeshError::Field)?;
+        } else {
+            self.field.split(region, boxes, &mut wants, regions).map_err(MeshError::Field)?;
         }
-        children.masks.push(mask);
-        if kept == 0 {
-            return Ok(());
-        }
-        let before = children.regions.len();
-        self.field.narrow(region, &boxes[..kept], &mut children.regions).map_err(MeshError::Field)?;
-        assert_eq!(children.regions.len(), before + kept, "a field gives each box a region");
+        masks.push(mask);
+        assert_eq!(regions.len(), before + kept, "a field gives each box a region");
         Ok(())
     }
 
-    /// Ranges of boxes of this size, which begin at these cells. A box that the scope only passes through may
-    /// be anything.
-    fn ranges_of(
-        &self,
-        region: &F::Region,
-        (boxes, firsts): (&[Box3], &[[usize; 3]]),
-        size: usize,
-    ) -> Result<[[f32; 2]; MAX_PARTS], MeshError<F::Error>> {
-        let cells = self.axes.each_ref().map(|axis| axis.len() - 1);
-        let is_passed = |first: &[usize; 3]| self.scope.passes(*first, size, cells);
-        if firsts.iter().all(is_passed) {
-            return Ok([ANYTHING; MAX_PARTS]);
-        }
-        let mut ranges = self.ranges(region, boxes)?;
-        for (range, _) in ranges.iter_mut().zip(firsts).filter(|(_, first)| is_passed(first)) {
-            *range = ANYTHING;
-        }
-        Ok(ranges)
-    }
-
-    fn ranges(
-        &self,
-        region: &F::Region,
-        boxes: &[Box3],
-    ) -> Result<[[f32; 2]; MAX_PARTS], MeshError<F::Error>> {
-        let mut ranges = [ANYTHING; MAX_PARTS];
-        self.field.ranges(region, boxes, &mut ranges[..boxes.len()]).map_err(MeshError::Field)?;
-        Ok(ranges)
+    /// Whether the scope only passes through a box of this size that begins at this cell: such a box may be
+    /// anything.
+    fn is_passed(&self, first: &[usize; 3], size: usize) -> bool {
+        self.scope.passes(*first, size, self.axes.each_ref().map(|axis| axis.len() - 1))
     }
 
     /// Whether the surface may cross a box, by the range of the field there. A NaN bound excludes nothing.

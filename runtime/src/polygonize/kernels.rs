@@ -79,6 +79,16 @@ impl Divisible for Kernels {
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
         self.pruner.narrow(region, boxes, parts)
     }
+
+    fn split(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        self.pruner.split(region, boxes, wants, parts)
+    }
 }
 
 impl Field for Kernels {

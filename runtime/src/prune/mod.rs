@@ -46,7 +46,7 @@ use jbt_lower::prune_info::SupportSpace;
 use jbt_model::check::CheckedTree;
 use jbt_model::origin::ModelOrigin;
 
-use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
+use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range, wanted};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
@@ -340,5 +340,23 @@ impl Divisible for Pruner {
         let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
         let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
         self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)
+    }
+
+    fn split(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        let known = region.rows() <= MAX_RANGED_ROWS;
+        let ranges = if known { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let range = |lane| ranges.as_ref().map_or(ANYTHING, |ranges| ranges.field(lane));
+        let (lanes, kept) = wanted(boxes, &mut |lane| wants(lane, range(lane)));
+        if kept.is_empty() {
+            return Ok(());
+        }
+        let probes = if self.program.info.probes > 0 { ranges.as_ref() } else { None };
+        self.regions(region, &kept, probes.map(|ranges| ranges.probes(&lanes)), parts)
     }
 }

@@ -7,8 +7,6 @@
 //! ```
 
 use super::{MAX_RANGED_ROWS, Pruner, Region};
-#[cfg(doc)]
-use crate::boxes::MAX_PARTS;
 use crate::boxes::{ANYTHING, Box3, Range};
 use crate::error::EvalError;
 
@@ -44,29 +42,9 @@ impl Pruner {
         Ok(found)
     }
 
-    /// The boxes, at most [`MAX_PARTS`] inside a region, whose ranges are wanted, each with its index and its
-    /// region; and the number of interval evaluations of distances. The result equals that of
-    /// [`ranges`](Divisible::ranges) and [`narrow`](Divisible::narrow), at the cost of one of them.
-    pub(crate) fn split(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        wanted: &dyn Fn(Range) -> bool,
-    ) -> Result<(Vec<(usize, Region)>, u64), EvalError> {
-        let ranged = region.rows() <= MAX_RANGED_ROWS;
-        let ranges = if ranged { Some(self.evaluate(&region.selection, boxes)?) } else { None };
-        let is_wanted = |&lane: &usize| ranges.as_ref().is_none_or(|ranges| wanted(ranges.field(lane)));
-        let kept: Vec<usize> = (0..boxes.len()).filter(is_wanted).collect();
-        let evaluations = if ranged { self.evaluations(&region.selection, boxes.len()) } else { 0 };
-        if kept.is_empty() {
-            return Ok((Vec::new(), evaluations));
-        }
-        let some: Vec<Box3> = kept.iter().map(|&lane| boxes[lane]).collect();
-        let mut regions = Vec::with_capacity(kept.len());
-        let probes =
-            ranges.as_ref().filter(|_| self.program.info.probes > 0).map(|ranges| ranges.probes(&kept));
-        self.regions(region, &some, probes, &mut regions)?;
-        Ok((kept.into_iter().zip(regions).collect(), evaluations))
+    /// The interval evaluations of distances that ranges of so many boxes inside a region take.
+    pub(crate) fn range_evaluations(&self, region: &Region, boxes: usize) -> u64 {
+        if region.rows() > MAX_RANGED_ROWS { 0 } else { self.evaluations(&region.selection, boxes) }
     }
 
     /// The ranges of the field in any number of proper boxes inside a region, and the number of interval
@@ -106,6 +84,23 @@ mod tests {
         [0.0, 1.0, 2.25, -9.0].map(|at| Box3::new([at, 0.0, 0.0], [at + 0.25, 0.25, 0.25]))
     }
 
+    /// The wanted boxes inside a region, each by its index and with its region.
+    fn split(
+        pruner: &Pruner,
+        region: &Region,
+        boxes: &[Box3],
+        wanted: fn(Range) -> bool,
+    ) -> Vec<(usize, Region)> {
+        let (mut kept, mut regions) = (Vec::new(), Vec::new());
+        let mut wants = |lane: usize, range: Range| {
+            kept.extend(wanted(range).then_some(lane));
+            wanted(range)
+        };
+        pruner.split(region, boxes, &mut wants, &mut regions).expect("parts");
+        assert_eq!(kept.len(), regions.len());
+        kept.into_iter().zip(regions).collect()
+    }
+
     #[test]
     fn ranges_and_regions_are_those_of_single_questions() {
         let pruner = pruner(3);
@@ -119,9 +114,12 @@ mod tests {
         assert_eq!(taken.boxes - before.boxes, 4);
         assert_eq!(taken.interval_evaluations - before.interval_evaluations, 12);
         assert_eq!(pruner.many_ranges(&region, &[]).expect("no ranges"), (Vec::new(), 0));
-        let (kept, evaluations) = pruner.split(&region, &boxes(), &|range| range[1] > 0.0).expect("parts");
-        assert_eq!(evaluations, 12);
-        let (mut parts, before) = (Vec::new(), pruner.counters());
+        assert_eq!(pruner.range_evaluations(&region, 4), 12);
+        let before = pruner.counters();
+        let kept = split(&pruner, &region, &boxes(), |range| range[1] > 0.0);
+        let taken = pruner.counters();
+        assert_eq!(taken.interval_evaluations - before.interval_evaluations, 12);
+        let (mut parts, before) = (Vec::new(), taken);
         pruner.narrow(&region, &boxes(), &mut parts).expect("regions");
         assert_eq!(pruner.counters(), before, "without probes nobody asks for ranges");
         let found: Vec<_> = kept.iter().map(|(lane, region)| (*lane, region.selection())).collect();
@@ -138,7 +136,9 @@ mod tests {
         let pruner = Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles");
         let region = pruner.everywhere();
         let bounds = [Box3::new([-0.1; 3], [0.1; 3])];
-        let (kept, _) = pruner.split(&region, &bounds, &|_| true).expect("parts");
+        let before = pruner.counters().boxes;
+        let kept = split(&pruner, &region, &bounds, |_| true);
+        assert_eq!(pruner.counters().boxes, before + 1, "one run tells both");
         let surveyed = pruner.survey(&region, &bounds, &|_| true).expect("parts");
         let mut parts = Vec::new();
         pruner.narrow(&region, &bounds, &mut parts).expect("regions");
@@ -160,9 +160,8 @@ mod tests {
             let (ranges, evaluations) = pruner.many_ranges(&region, &boxes()).expect("ranges");
             assert_eq!(evaluations, if ranged { count as u64 } else { 0 });
             assert_eq!(ranges.iter().any(|&range| range != ANYTHING), ranged);
-            let (kept, evaluations) =
-                pruner.split(&region, &boxes(), &|range| range[1] > 0.0).expect("parts");
-            assert_eq!(evaluations, if ranged { 4 * count as u64 } else { 0 });
+            let kept = split(&pruner, &region, &boxes(), |range| range[1] > 0.0);
+            assert_eq!(pruner.range_evaluations(&region, 4), if ranged { 4 * count as u64 } else { 0 });
             assert_eq!(kept.len(), if ranged { 3 } else { 4 });
         }
     }

@@ -40,6 +40,16 @@ impl Divisible for SurfaceField<'_> {
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
         self.renderer.pruner.narrow(region, boxes, parts)
     }
+
+    fn split(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        self.renderer.pruner.split(region, boxes, wants, parts)
+    }
 }
 
 impl Field for SurfaceField<'_> {

@@ -19,9 +19,8 @@ use std::ops::Range;
 use jbt_ir::limits::{MAX_GAP_BYTES, MAX_GAP_PAIRS, MAX_GAP_WORK};
 use jbt_ir::watch;
 
-use super::ranges::ranges;
 use super::{Solid, SolidBatch};
-use crate::boxes::{Box3, Divisible as _};
+use crate::boxes::{self, Box3, Divisible as _};
 use crate::error::EvalError;
 use crate::ordered::ordered;
 use crate::prune::Region;
@@ -138,20 +137,18 @@ impl<'a> GapTree<'a> {
     /// Adds those parts of a region that may hold points of the solid.
     fn add(&mut self, region: &Region, parts: &[Box3], near: Option<[f32; 3]>) -> Result<(), EvalError> {
         let solid = self.solid;
-        let left: Vec<(Box3, f32)> = parts
-            .iter()
-            .zip(ranges(solid, region, parts)?)
-            .filter(|(_, range)| solid.side(*range) != Some(false))
-            .map(|(part, [_, highest])| (*part, highest))
-            .collect();
+        let (mut left, mut regions) = (Vec::new(), Vec::new());
+        let mut wants = |part: usize, range: boxes::Range| {
+            let may_hold = solid.side(range) != Some(false);
+            left.extend(may_hold.then_some((parts[part], range[1])));
+            may_hold
+        };
+        solid.pruner.split(region, parts, &mut wants, &mut regions)?;
         if left.is_empty() {
             return Ok(());
         }
-        let bounds: Vec<Box3> = left.iter().map(|(bounds, _)| *bounds).collect();
-        let mut regions = Vec::new();
-        solid.pruner.narrow(region, &bounds, &mut regions)?;
         let mut batch = SolidBatch::default();
-        bounds.iter().for_each(|part| batch.push(part.center()));
+        left.iter().for_each(|(part, _)| batch.push(part.center()));
         let sides = batch.sides(solid, region)?;
         for (((bounds, highest), region), is_inside) in left.into_iter().zip(regions).zip(sides) {
             let inside = if is_inside { Some(bounds.center()) } else { near };

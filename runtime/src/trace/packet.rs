@@ -226,11 +226,17 @@ impl<'a> PacketTrace<'a> {
             *bounds = part.beam.bounds(part.places);
         }
         let iso = self.tracer.iso;
-        let undecided = |[low, high]: [f32; 2]| !(low >= iso || high < iso);
-        let (kept, evaluations) =
-            self.tracer.pruner.split(&cell.region, &boxes[..parts.len()], &undecided)?;
+        let (mut kept, mut regions) = (Vec::with_capacity(MAX_PARTS), Vec::with_capacity(MAX_PARTS));
+        let mut undecided = |part: usize, [low, high]: [f32; 2]| {
+            let is_open = !(low >= iso || high < iso);
+            kept.extend(is_open.then_some(part));
+            is_open
+        };
+        let pruner = &self.tracer.pruner;
+        pruner.split(&cell.region, &boxes[..parts.len()], &mut undecided, &mut regions)?;
+        let evaluations = pruner.range_evaluations(&cell.region, parts.len());
         let fruitless = if kept.len() == parts.len() { cell.fruitless + 1 } else { 0 };
-        for (part, region) in kept.into_iter().rev() {
+        for (part, region) in kept.into_iter().zip(regions).rev() {
             let PacketPart { lines, beam, places } = parts[part].clone();
             self.cells.push(PacketCell { lines, beam, places, region, fruitless });
         }

@@ -126,18 +126,25 @@ impl<F: Field> ThinSearch<'_, F> {
         if count == 0 {
             return Ok(());
         }
-        let ranges = self.ranges(region, &boxes[..count])?;
+        let boxes = &boxes[..count];
         let may_cross = |range: Range| !(range[0] >= self.iso || range[1] < self.iso);
-        let kept: Vec<usize> = (0..count).filter(|&n| may_cross(ranges[n])).collect();
         if half == EDGE {
-            for n in kept {
+            let ranges = self.ranges(region, boxes)?;
+            for n in (0..count).filter(|&n| may_cross(ranges[n])) {
                 self.block(places[n], (boxes[n], region, None), *near, found)?;
             }
             return Ok(());
         }
-        let bounds: Vec<Box3> = kept.iter().map(|&n| boxes[n]).collect();
-        for (n, region) in kept.iter().zip(self.narrow(region, &bounds)?) {
-            self.chunk((half, places[*n]), &region, near, found)?;
+        let (mut kept, mut regions) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut wants = |n: usize, range: Range| {
+            if may_cross(range) {
+                kept.push(n);
+            }
+            may_cross(range)
+        };
+        self.field.split(region, boxes, &mut wants, &mut regions).map_err(MeshError::Field)?;
+        for (n, region) in kept.into_iter().zip(regions) {
+            self.chunk((half, places[n]), &region, near, found)?;
         }
         Ok(())
     }
@@ -177,7 +184,9 @@ impl<F: Field> ThinSearch<'_, F> {
             _ if self.field.work(region).ops <= COSTLY => region,
             Some(own) => own,
             None => {
-                narrowed = self.narrow(region, &[bounds])?.pop().expect("one box has one region");
+                let mut own = Vec::with_capacity(1);
+                self.field.narrow(region, &[bounds], &mut own).map_err(MeshError::Field)?;
+                narrowed = own.pop().expect("one box has one region");
                 &narrowed
             }
         };
@@ -326,14 +335,6 @@ impl<F: Field> ThinSearch<'_, F> {
         let mut ranges = [ANYTHING; MAX_PARTS];
         self.field.ranges(region, boxes, &mut ranges[..boxes.len()]).map_err(MeshError::Field)?;
         Ok(ranges)
-    }
-
-    fn narrow(&self, region: &F::Region, boxes: &[Box3]) -> Result<Vec<F::Region>, MeshError<F::Error>> {
-        let mut regions = Vec::with_capacity(boxes.len());
-        if !boxes.is_empty() {
-            self.field.narrow(region, boxes, &mut regions).map_err(MeshError::Field)?;
-        }
-        Ok(regions)
     }
 }
 
