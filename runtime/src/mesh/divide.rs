@@ -12,6 +12,7 @@
 //! Boxes are closed, with their high sides: a point that two boxes share is on the same side of the surface
 //! in both, and a crossed cell is always in a brick.
 
+use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jbt_ir::limits::MAX_BRICKS;
@@ -27,7 +28,7 @@ use super::report::Sides;
 use super::scope::DivisionScope;
 use super::stage::MeshStage;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
-use crate::progress::{Cancelled, Progress};
+use crate::progress::Progress;
 use crate::span::span;
 
 /// The result of the division.
@@ -354,11 +355,11 @@ const LINKED: usize = 1 << 8;
 type LinkedBoxes = (Vec<[u32; 3]>, Vec<[u32; 27]>);
 
 /// The places of the remaining children, and their neighbours, from those of the boxes.
-fn link(
+fn link<E: Error + Send + 'static>(
     (places, neighbours): (&[[u32; 3]], &[[u32; 27]]),
     masks: &[u8],
     progress: &Progress<'_>,
-) -> Result<LinkedBoxes, Cancelled> {
+) -> Result<LinkedBoxes, MeshError<E>> {
     let firsts = starts(masks.iter().map(|mask| mask.count_ones() as usize));
     let of_child = |parent: usize, child: usize| {
         let place = [0, 1, 2].map(|axis| 2 * places[parent][axis] + (child >> axis & 1) as u32);
@@ -373,7 +374,7 @@ fn link(
         (place, around)
     };
     let count = firsts[masks.len()];
-    let (mut all_places, mut all_neighbours) = (FilledVector::new(count), FilledVector::new(count));
+    let (mut all_places, mut all_neighbours) = (FilledVector::new(count)?, FilledVector::new(count)?);
     let places = all_places.parts(&firsts, LINKED, 1).into_iter();
     let parts: Vec<LinkedPart<'_>> = places.zip(all_neighbours.parts(&firsts, LINKED, 1)).collect();
     let of_part = |(index, (places, neighbours)): (usize, LinkedPart<'_>)| {
@@ -386,7 +387,7 @@ fn link(
                 (*place, *around) = of_child(parent, child);
             }
         }
-        Ok(())
+        Ok::<_, MeshError<E>>(())
     };
     scatter(|_| parts.into_par_iter().enumerate().try_for_each(of_part))?;
     Ok((all_places.finish(), all_neighbours.finish()))

@@ -6,6 +6,7 @@ use std::error::Error;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
+use super::fill::NoMemory;
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::job::JobError;
 use crate::progress::Cancelled;
@@ -61,11 +62,11 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there may be.
         limit: usize,
     },
-    /// The memory for the field at the points of the bricks (5 bytes a point) is not to be had.
-    #[error("there is no memory for the field at {points} lattice points")]
+    /// The memory for all bricks, points of bricks, vertices or triangles is not to be had.
+    #[error("there is no memory for {bytes} bytes of the mesh")]
     Memory {
-        /// How many points there are.
-        points: usize,
+        /// How many bytes were asked for at once.
+        bytes: usize,
     },
     /// Whether faces of a block of cells are flipped depends on cells further away than was looked at: a
     /// chain of ambiguous faces leads there. It has to be asked again with a larger reach.
@@ -102,6 +103,12 @@ impl<E: Error + 'static> JobError for MeshError<E> {
     fn told(self) -> Self {
         let is_stop = |error: &E| (error as &dyn Any).downcast_ref() == Some(&EvalError::Cancelled);
         if matches!(&self, Self::Field(error) if is_stop(error)) { Self::Cancelled } else { self }
+    }
+}
+
+impl<E: Error + 'static> From<NoMemory> for MeshError<E> {
+    fn from(NoMemory { bytes }: NoMemory) -> Self {
+        Self::Memory { bytes }
     }
 }
 

@@ -4,11 +4,16 @@
 //! system finds its pages one after the other, and each line of memory goes from one processor to another.
 //! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it.
 
-use std::collections::TryReserveError;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::brick::split;
+
+/// The memory for so many bytes is not to be had.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct NoMemory {
+    pub(super) bytes: usize,
+}
 
 /// A vector of known length, to be filled in parts.
 pub(super) struct FilledVector<T> {
@@ -26,16 +31,17 @@ pub(super) struct VectorPart<'a, T> {
 }
 
 impl<T: Copy + Default> FilledVector<T> {
-    /// Room for this many values. Without so much memory it does what vectors do.
-    pub(super) fn new(length: usize) -> Self {
-        Self { values: Vec::with_capacity(length), length, opened: AtomicUsize::new(0) }
+    /// Room for this many values.
+    pub(super) fn new(length: usize) -> Result<Self, NoMemory> {
+        let mut values = Vec::new();
+        let bytes = length.saturating_mul(size_of::<T>());
+        values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
+        Ok(Self { values, length, opened: AtomicUsize::new(0) })
     }
 
-    /// The same, or an error if there is not so much memory.
-    pub(super) fn try_new(length: usize) -> Result<Self, TryReserveError> {
-        let mut values = Vec::new();
-        values.try_reserve_exact(length)?;
-        Ok(Self { values, length, opened: AtomicUsize::new(0) })
+    /// Room for the few values of an edit: without memory it does what vectors do.
+    pub(super) fn few(length: usize) -> Self {
+        Self { values: Vec::with_capacity(length), length, opened: AtomicUsize::new(0) }
     }
 
     /// Divides the vector among groups of bricks: the places of brick `b` are from `starts[b]` to
@@ -76,25 +82,26 @@ impl<'a, T: Copy + Default> VectorPart<'a, T> {
 
 #[cfg(test)]
 mod tests {
-    use super::FilledVector;
+    use super::{FilledVector, NoMemory};
 
     #[test]
     fn parts_make_the_whole() {
-        let mut vector = FilledVector::<u32>::new(12);
+        let mut vector = FilledVector::<u32>::new(12).expect("some bytes");
         for (part, number) in vector.parts(&[0, 1, 1, 4], 2, 3).into_iter().zip(1..) {
             let places = part.open();
             assert!(places.iter().all(|place| *place == 0));
             places.fill(number);
         }
         assert_eq!(vector.finish(), [1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2]);
-        assert!(FilledVector::<u32>::new(0).finish().is_empty());
-        assert!(FilledVector::<u32>::try_new(usize::MAX).is_err());
+        assert!(FilledVector::<u32>::few(0).finish().is_empty());
+        let too_many = FilledVector::<u32>::new(usize::MAX / 4).err();
+        assert_eq!(too_many, Some(NoMemory { bytes: usize::MAX - 3 }));
     }
 
     #[test]
     #[should_panic(expected = "each part is opened")]
     fn a_part_that_was_not_opened_is_noticed() {
-        let mut vector = FilledVector::<u8>::new(4);
+        let mut vector = FilledVector::<u8>::few(4);
         for division in 0..2 {
             let mut parts = vector.parts(&[0, 2, 4], 1, 1).into_iter();
             // Once the first part, once the second: four places in all.

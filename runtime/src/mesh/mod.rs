@@ -94,6 +94,7 @@ use crate::progress::{EACH, Progress};
 use crossing::Crossings;
 use divide::{BrickDivision, BrickLimits};
 use doubtful::VertexSet;
+use fill::FilledVector;
 use fold::{SharpQuad, SideCorner};
 use scope::DivisionScope;
 use vertex::batch::VertexSource;
@@ -233,7 +234,9 @@ fn polygonize<F: Field>(
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     let doubtful = VertexSet::new(0, count, done.doubtful.iter().copied());
     let mut around;
-    (mesh.triangles, around) = surface::triangles(bricks, &crossings, (&mesh.positions, &doubtful), go_on)?;
+    let room = FilledVector::new(surface::triangle_count(&crossings))?;
+    (mesh.triangles, around) =
+        surface::triangles((bricks, &crossings), room, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
     let anew = quads.iter().map(SharpQuad::number);

@@ -60,8 +60,8 @@ pub(crate) fn sample<F: Field>(
     });
     let starts = starts(counts.into_iter());
     let (group, points) = (bricks.group(), starts[bricks.len()]);
-    let mut values = FilledVector::try_new(points).map_err(|_| MeshError::Memory { points })?;
-    let mut inside = FilledVector::try_new(points).map_err(|_| MeshError::Memory { points })?;
+    let mut values = FilledVector::new(points)?;
+    let mut inside = FilledVector::new(points)?;
     let groups: Vec<_> =
         values.parts(&starts, group, 1).into_iter().zip(inside.parts(&starts, group, 1)).collect();
     let total = groups.len();

@@ -13,17 +13,21 @@ use super::crossing::{CrossedCell, Crossings};
 use super::doubtful::{DoubtfulQuad, VertexSet};
 use super::fill::{FilledVector, VectorPart};
 
-/// The triangles of all quads, in the order of the cells that own them, and the quads at doubtful vertices,
-/// ascending. It asks at times whether to go on.
+/// How many triangles all quads have.
+pub(crate) fn triangle_count(crossings: &Crossings) -> usize {
+    2 * crossings.quad_count()
+}
+
+/// Fills room for the triangles of all quads, in the order of the cells that own them; and the quads at
+/// doubtful vertices, ascending. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
-    bricks: &Bricks,
-    crossings: &Crossings,
+    (bricks, crossings): (&Bricks, &Crossings),
+    mut triangles: FilledVector<[u32; 3]>,
     (positions, doubtful): (&[[f32; 3]], &VertexSet),
     go_on: impl Fn() -> Result<(), E> + Sync,
 ) -> Result<(Vec<[u32; 3]>, Vec<DoubtfulQuad>), E> {
     span!("triangles");
     let group = bricks.group();
-    let mut triangles = FilledVector::new(2 * crossings.quad_count());
     let groups = triangles.parts(&crossings.quads, group, 2);
     let fill = |around: &mut Around, (index, triangles): (usize, VectorPart<'_, [u32; 3]>)| {
         span!("triangles of some bricks");

@@ -24,7 +24,7 @@ use jbt_model::orientation::Orientation;
 
 use super::error::MeshError;
 use super::field::{AttributePlanes, Field};
-use super::fill::{FilledVector, VectorPart};
+use super::fill::{FilledVector, NoMemory, VectorPart};
 use super::indexed::{Attribute, Mesh};
 use super::pull::{LANES, VertexLanes, VertexPlanes, pull_lanes};
 use super::stage::MeshStage;
@@ -60,7 +60,7 @@ pub(crate) fn finish<F: Field>(
         return Err(MeshError::Width { name: name.clone(), width: *width });
     }
     let widths: Vec<usize> = attributes.iter().map(|(_, width)| *width).collect();
-    let mut vectors = MeshVectors::new(count, &widths);
+    let mut vectors = MeshVectors::new(count, &widths)?;
     let group = source.bricks.group();
     let targets = vectors.parts(&source.crossings.vertices, group, &widths);
     let total = targets.len();
@@ -109,9 +109,10 @@ struct MeshParts<'a> {
 
 impl MeshVectors {
     /// Room for vertices with attributes of these widths.
-    fn new(count: usize, widths: &[usize]) -> Self {
-        let attributes = widths.iter().map(|width| FilledVector::new(width * count)).collect();
-        Self { positions: FilledVector::new(count), normals: FilledVector::new(count), attributes }
+    fn new(count: usize, widths: &[usize]) -> Result<Self, NoMemory> {
+        let attributes =
+            widths.iter().map(|width| FilledVector::new(width * count)).collect::<Result<_, _>>()?;
+        Ok(Self { positions: FilledVector::new(count)?, normals: FilledVector::new(count)?, attributes })
     }
 
     /// Divides them among groups of bricks.

@@ -34,6 +34,7 @@ use super::divide::{self, BrickDivision, BrickLimits};
 use super::doubtful::{VertexSet, repair_normals};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
+use super::fill::FilledVector;
 use super::fold::{self, SharpQuad, SideCorner};
 use super::indexed::{Attribute, Mesh};
 use super::lattice::Lattice;
@@ -178,7 +179,9 @@ pub(crate) fn extract<F: Field>(
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
     let marked = VertexSet::new(0, mesh.positions.len(), doubtful.iter().copied());
     let mut around;
-    (mesh.triangles, around) = surface::triangles(&bricks, &crossings, (&mesh.positions, &marked), go_on)?;
+    let room = FilledVector::new(surface::triangle_count(&crossings))?;
+    (mesh.triangles, around) =
+        surface::triangles((&bricks, &crossings), room, (&mesh.positions, &marked), go_on)?;
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     repair_normals(&mut mesh, &marked, &mut around, quads.iter().map(SharpQuad::number), &progress)?;
