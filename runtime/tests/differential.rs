@@ -29,10 +29,12 @@ use jbt_testkit::bits::same;
 use jbt_testkit::points::{HOSTILE, spicy};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::count;
+use jbt_testkit::skip::at_length;
 use jbt_text::print;
 use rayon::prelude::*;
 
-const SHAPES: u64 = 400;
+/// Random shapes: of a run in short, and of one [at length](at_length).
+const SHAPES: [u64; 2] = [150, 400];
 const SETS: u64 = 10;
 
 /// What the oracle allows: f32 rounding of coordinates, rows and sums, times how steep the field may be.
@@ -50,7 +52,8 @@ struct Tally {
 
 #[test]
 fn engines_agree_to_the_bit_and_with_the_oracle() {
-    let (shapes, seed) = (count("JBT_DIFFERENTIAL_SHAPES", SHAPES), count("JBT_DIFFERENTIAL_SEED", 0));
+    let shapes = count("JBT_DIFFERENTIAL_SHAPES", SHAPES[usize::from(at_length())]);
+    let seed = count("JBT_DIFFERENTIAL_SEED", 0);
     let tally = Tally::default();
     (seed..seed + shapes).into_par_iter().for_each(|shape| try_shape(shape, &tally));
     let without = tally.without_surface.load(Ordering::Relaxed);

@@ -14,13 +14,10 @@ use common::answers;
 use jbt::{Compiler, Points, Query};
 use jbt_testkit::bits::assert_same;
 use jbt_testkit::random::Random;
+use jbt_testkit::skip::at_length;
 
 /// These tests look at the memory of the whole process: one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
-
-fn at_length() -> bool {
-    std::env::var_os("JBT_FAULTS").is_some_and(|value| value == "1")
-}
 
 /// Bytes of this process that are in memory.
 fn resident() -> u64 {

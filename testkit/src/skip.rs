@@ -13,6 +13,12 @@ use std::fs::{self, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+/// Whether tests are asked for that take long: those of faults, and more random cases. `JBT_FAULTS=1` does.
+#[must_use]
+pub fn at_length() -> bool {
+    std::env::var_os("JBT_FAULTS").is_some_and(|value| value == "1")
+}
+
 /// Says that the running test is skipped, and why: in words that name what is missing and how to get it.
 pub fn skip(reason: &str) {
     let program = program();

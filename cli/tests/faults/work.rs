@@ -15,7 +15,7 @@ pub const TEMPORARY: &str = ".jbt-";
 
 /// Whether these tests are wanted. Says so where not.
 pub fn wanted() -> bool {
-    let wanted = std::env::var_os("JBT_FAULTS").is_some_and(|value| value == "1");
+    let wanted = jbt_testkit::skip::at_length();
     if !wanted {
         jbt_testkit::skip::skip("JBT_FAULTS=1 runs tests of faults, some minutes");
     }

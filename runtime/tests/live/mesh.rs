@@ -160,28 +160,38 @@ fn follow(engine: Engine, (seed, leaves): (u64, usize), edits: usize, settings: 
 }
 
 #[test]
-fn a_thousand_edits() {
-    let cells = |cell| Polygonize { fineness: Fineness::Cell(cell), ..Polygonize::default() };
+fn six_hundred_edits() {
     let [_, local, patched] = follow(Engine::Lanes, (1, 30), 600, cells(0.07));
     assert!(local > 200 && patched > 150, "{local} local edits, {patched} patched ones");
+}
+
+#[test]
+fn two_hundred_edits_of_a_region() {
     let region = Some(Box3::new([-0.8, -1.0, -0.9], [0.9, 0.7, 1.0]));
     follow(Engine::Lanes, (2, 30), 200, Polygonize { region, ..cells(0.1) });
+}
+
+#[test]
+fn edits_by_other_engines() {
     follow(Engine::Scalar, (3, 30), 50, cells(0.12));
     if !Engine::Jit.backends().is_empty() {
         follow(Engine::Jit, (4, 30), 100, cells(0.07));
     }
 }
 
+fn cells(cell: f64) -> Polygonize {
+    Polygonize { fineness: Fineness::Cell(cell), ..Polygonize::default() }
+}
+
 /// Parts about as large as cells: many faces are pinched, and flips depend on each other.
 #[test]
 fn edits_of_shreds() {
-    let settings = Polygonize { fineness: Fineness::Cell(0.17), ..Polygonize::default() };
-    let [flips, ..] = follow(Engine::Lanes, (5, 250), 100, settings);
+    let [flips, ..] = follow(Engine::Lanes, (5, 250), 100, cells(0.17));
     assert!(flips > 200, "{flips} flips");
 }
 
 fn coarse() -> Polygonize {
-    Polygonize { fineness: Fineness::Cell(0.1), ..Polygonize::default() }
+    cells(0.1)
 }
 
 #[test]
