@@ -189,9 +189,10 @@ pub trait Divisible: Sync {
         parts: &mut Vec<Self::Region>,
     ) -> Result<(), Self::Error>;
 
-    /// The regions of the wanted ones of up to [`MAX_PARTS`] proper boxes inside a region, appended to `parts`.
-    /// `wants` is asked once about each box, in their order: by the box's index and its range. The result is
-    /// that of [`ranges`](Self::ranges) and then [`narrow`](Self::narrow); a field may share work of both.
+    /// The regions of the wanted ones of up to [`MAX_PARTS`] proper boxes inside a region, appended to
+    /// `parts`. `wants` is asked once about each box, in their order: by the box's index and its range. The
+    /// result is that of [`ranges`](Self::ranges) and then [`narrow`](Self::narrow); a field may share work
+    /// of both.
     ///
     /// # Errors
     /// Whatever the evaluation reports.

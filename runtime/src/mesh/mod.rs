@@ -94,7 +94,6 @@ use crate::progress::{EACH, Progress};
 use crossing::Crossings;
 use divide::{BrickDivision, BrickLimits};
 use doubtful::VertexSet;
-use fill::FilledVector;
 use fold::{SharpQuad, SideCorner};
 use scope::DivisionScope;
 use vertex::batch::VertexSource;
@@ -203,9 +202,6 @@ fn polygonize<F: Field>(
     samples.forget_inside();
     let field_evaluations = samples.len() as u64;
     let count = crossings.vertex_count();
-    if u32::try_from(count).is_err() {
-        return Err(MeshError::TooManyVertices { vertices: count as u64 });
-    }
     let source = VertexSource { field, options, bricks, regions, samples: &samples, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
     drop(samples);
@@ -234,9 +230,8 @@ fn polygonize<F: Field>(
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     let doubtful = VertexSet::new(0, count, done.doubtful.iter().copied());
     let mut around;
-    let room = FilledVector::new(surface::triangle_count(&crossings))?;
-    (mesh.triangles, around) =
-        surface::triangles((bricks, &crossings), room, (&mesh.positions, &doubtful), go_on)?;
+    let room = surface::room(&crossings)?;
+    (mesh.triangles, around) = surface::triangles(of, room, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
     let anew = quads.iter().map(SharpQuad::number);

@@ -11,11 +11,16 @@ use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
 use super::doubtful::{DoubtfulQuad, VertexSet};
-use super::fill::{FilledVector, VectorPart};
+use super::fill::{FilledVector, NoMemory, VectorPart};
 
-/// How many triangles all quads have.
-pub(crate) fn triangle_count(crossings: &Crossings) -> usize {
-    2 * crossings.quad_count()
+/// Room for the triangles of all quads.
+pub(super) fn room(crossings: &Crossings) -> Result<FilledVector<[u32; 3]>, NoMemory> {
+    FilledVector::new(2 * crossings.quad_count())
+}
+
+/// The same for the few quads of an edit.
+pub(super) fn room_of_few(crossings: &Crossings) -> FilledVector<[u32; 3]> {
+    FilledVector::few(2 * crossings.quad_count())
 }
 
 /// Fills room for the triangles of all quads, in the order of the cells that own them; and the quads at

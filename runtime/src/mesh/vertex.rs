@@ -53,6 +53,9 @@ pub(crate) fn finish<F: Field>(
 ) -> Result<(Mesh, Done), MeshError<F::Error>> {
     span!("vertices");
     let count = source.crossings.vertex_count();
+    if u32::try_from(count).is_err() {
+        return Err(MeshError::TooManyVertices { vertices: count as u64 });
+    }
     let attributes = source.field.attributes();
     if let Some((name, width)) =
         attributes.iter().find(|(_, width)| !(1..=MAX_ATTRIBUTE_WIDTH).contains(width))

@@ -34,7 +34,6 @@ use super::divide::{self, BrickDivision, BrickLimits};
 use super::doubtful::{VertexSet, repair_normals};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
-use super::fill::FilledVector;
 use super::fold::{self, SharpQuad, SideCorner};
 use super::indexed::{Attribute, Mesh};
 use super::lattice::Lattice;
@@ -153,9 +152,6 @@ pub(crate) fn extract<F: Field>(
     let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     found.keep(&bricks, |brick, cell| is_in(cell_of(&bricks, brick, cell), near));
     let mut crossings = found.numbered(&bricks, flipped, &progress)?;
-    if u32::try_from(crossings.vertex_count()).is_err() {
-        return Err(MeshError::TooManyVertices { vertices: crossings.vertex_count() as u64 });
-    }
     let source = VertexSource {
         field,
         options: &options,
@@ -179,9 +175,8 @@ pub(crate) fn extract<F: Field>(
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
     let marked = VertexSet::new(0, mesh.positions.len(), doubtful.iter().copied());
     let mut around;
-    let room = FilledVector::new(surface::triangle_count(&crossings))?;
-    (mesh.triangles, around) =
-        surface::triangles((&bricks, &crossings), room, (&mesh.positions, &marked), go_on)?;
+    let room = surface::room(&crossings)?;
+    (mesh.triangles, around) = surface::triangles(of, room, (&mesh.positions, &marked), go_on)?;
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     repair_normals(&mut mesh, &marked, &mut around, quads.iter().map(SharpQuad::number), &progress)?;

@@ -9,7 +9,6 @@ use crate::mesh::area::area_vector;
 use crate::mesh::brick::{Bricks, place as number_place};
 use crate::mesh::crossing::Crossings;
 use crate::mesh::doubtful::{AreaSums, VertexSet, judged};
-use crate::mesh::fill::FilledVector;
 use crate::mesh::fold;
 use crate::mesh::report::Sides;
 use crate::mesh::surface;
@@ -120,7 +119,7 @@ impl BrickMesh {
         let positions: Vec<[f32; 3]> =
             names.iter().map(|&name| self.buffers.positions[name as usize]).collect();
         let marked = &VertexSet::NONE;
-        let room = FilledVector::few(surface::triangle_count(&crossings));
+        let room = surface::room_of_few(&crossings);
         let of = (&bricks, &crossings);
         let Ok((mut triangles, _)) = surface::triangles(of, room, (&positions, marked), always);
         let Ok(quads) = fold::sharp_quads((&bricks, &crossings), &sharp, [0; 3], always);
