@@ -21,8 +21,8 @@ pub struct FieldWork {
 ///
 /// ```text
 ///     region(lattice)                              what matters in the whole lattice
-///       └─ ranges(region, 8 halves) ──► drop those without surface
-///          narrow(region, the others) ──► their regions, and so on
+///       └─ split(region, 8 halves)             those without surface are dropped, by their ranges;
+///          │                                   the others have regions, and so on
 ///             └─ field, gradient, all(region of a brick, points in it)
 /// ```
 ///

@@ -6,9 +6,10 @@
 //!          of rows that meet in a contest, those that may win, by another                           (winners)
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
 //!          the rule of the operator says which of the zero rows may go                        (rule)
-//!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
-//!          few formulas that are rows are run one by one to find that out                     (decide)
+//!          operands of a union below its field in the whole box cannot win: left out (an intersection: above),
+//!          as ranges of probes tell of tables of one row                                      (decide)
 //!          of other rows, ranges in a box come from one run with rows as lanes                (contest)
+//! split:   ranges and, of wanted boxes, regions: one call tells the field and the probes
 //! ```
 //!
 //! A selection is right if evaluation with it gives, at every point of its box, the same bits as evaluation
