@@ -65,7 +65,7 @@ fn engines_agree_to_the_bit_and_with_the_oracle() {
          {gradients} gradients, {directions} directions"
     );
     assert!(directions * 40 > compared, "some models have directions");
-    assert!(without * 2 < shapes * SETS, "most models have a surface where they are tried");
+    assert!(5 * without < 3 * shapes * SETS, "many models have a surface where they are tried");
     assert!(gradients * 4 > compared, "most gradients are compared");
 }
 

@@ -9,11 +9,13 @@ use jbt::tree::WeightOf;
 use jbt::{Box3, Compiler, Engine, Evaluator, Fineness, Model, Points, Polygonize, PolygonizeError, Query};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, tree};
+use jbt_testkit::skip::at_length;
 use rayon::prelude::*;
 
 use crate::{blocks, settings};
 
-const SHAPES: u64 = 200;
+/// Random models: of a run in short, and of one [at length](at_length).
+const SHAPES: [u64; 2] = [80, 200];
 
 #[derive(Default)]
 struct Tally {
@@ -26,7 +28,7 @@ struct Tally {
 /// All blocks, their meshes, and the answers to every query at points of them.
 #[test]
 fn every_block_of_random_models_has_the_bits_of_the_whole() {
-    let shapes = count("JBT_REMOTE_SHAPES", SHAPES);
+    let shapes = count("JBT_REMOTE_SHAPES", SHAPES[usize::from(at_length())]);
     let tally = Tally::default();
     (0..shapes).into_par_iter().for_each(|shape| {
         let leaves = 1 + (shape % 29) as usize;
