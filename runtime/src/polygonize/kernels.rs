@@ -3,7 +3,6 @@
 use jbt_model::query::Query;
 use smallvec::SmallVec;
 
-use crate::boxes::{Box3, Divisible, Range};
 use crate::compiled::{Compiled, Decisions, Task};
 use crate::counter::Counters;
 use crate::divide::Edit;
@@ -11,7 +10,7 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::{Field, FieldWork};
-use crate::prune::{PruneCounters, Pruner, Region};
+use crate::prune::{PruneCounters, Pruned, Pruner, Region};
 
 /// What a mesh asks: a pruner, and three evaluators for regions.
 pub(crate) struct Kernels {
@@ -64,30 +63,9 @@ impl Kernels {
     }
 }
 
-impl Divisible for Kernels {
-    type Error = EvalError;
-    type Region = Region;
-
-    fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
-        self.pruner.region(bounds)
-    }
-
-    fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
-        self.pruner.ranges(region, boxes, ranges)
-    }
-
-    fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        self.pruner.narrow(region, boxes, parts)
-    }
-
-    fn split(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        wants: &mut dyn FnMut(usize, Range) -> bool,
-        parts: &mut Vec<Region>,
-    ) -> Result<(), EvalError> {
-        self.pruner.split(region, boxes, wants, parts)
+impl Pruned for Kernels {
+    fn pruner(&self) -> &Pruner {
+        &self.pruner
     }
 }
 

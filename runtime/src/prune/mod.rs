@@ -283,6 +283,26 @@ impl Pruner {
         }
         Ok(())
     }
+
+    /// Appends the regions of the wanted ones of any number of parts of a region, by one run of the interval
+    /// kernel: see [`Divisible::split`].
+    fn divided(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        let known = region.rows() <= MAX_RANGED_ROWS;
+        let ranges = if known { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let range = |lane| ranges.as_ref().map_or(ANYTHING, |ranges| ranges.field(lane));
+        let (lanes, kept) = wanted(boxes, &mut |lane| wants(lane, range(lane)));
+        if kept.is_empty() {
+            return Ok(());
+        }
+        let probes = if self.program.info.probes > 0 { ranges.as_ref() } else { None };
+        self.regions(region, &kept, probes.map(|ranges| ranges.probes(&lanes)), parts)
+    }
 }
 
 /// The boxes of a point inside of a warp, whose ranges are probes.
@@ -295,6 +315,38 @@ fn inner_boxes(probes: ProbeRanges<'_>, probe: usize) -> Boxes {
         }
     }
     Boxes::new(boxes)
+}
+
+/// What has a pruner, which divides space for it.
+pub(crate) trait Pruned: Sync {
+    fn pruner(&self) -> &Pruner;
+}
+
+impl<T: Pruned> Divisible for T {
+    type Error = EvalError;
+    type Region = Region;
+
+    fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
+        self.pruner().region(bounds)
+    }
+
+    fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
+        self.pruner().ranges(region, boxes, ranges)
+    }
+
+    fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
+        self.pruner().narrow(region, boxes, parts)
+    }
+
+    fn split(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wants: &mut dyn FnMut(usize, Range) -> bool,
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        self.pruner().divided(region, boxes, wants, parts)
+    }
 }
 
 impl Divisible for Pruner {
@@ -350,14 +402,6 @@ impl Divisible for Pruner {
         wants: &mut dyn FnMut(usize, Range) -> bool,
         parts: &mut Vec<Region>,
     ) -> Result<(), EvalError> {
-        let known = region.rows() <= MAX_RANGED_ROWS;
-        let ranges = if known { Some(self.evaluate(&region.selection, boxes)?) } else { None };
-        let range = |lane| ranges.as_ref().map_or(ANYTHING, |ranges| ranges.field(lane));
-        let (lanes, kept) = wanted(boxes, &mut |lane| wants(lane, range(lane)));
-        if kept.is_empty() {
-            return Ok(());
-        }
-        let probes = if self.program.info.probes > 0 { ranges.as_ref() } else { None };
-        self.regions(region, &kept, probes.map(|ranges| ranges.probes(&lanes)), parts)
+        self.divided(region, boxes, wants, parts)
     }
 }

@@ -26,16 +26,15 @@ impl Pruner {
         boxes: &[Box3],
         wanted: &dyn Fn(Range) -> bool,
     ) -> Result<Vec<(Range, Option<Region>)>, EvalError> {
-        let ranged = region.rows() <= MAX_RANGED_ROWS;
-        let ranges = if ranged { Some(self.evaluate(&region.selection, boxes)?) } else { None };
-        let range = |index: usize| ranges.as_ref().map_or(ANYTHING, |ranges| ranges.field(index));
-        let mut found: Vec<(Range, Option<Region>)> =
-            (0..boxes.len()).map(|index| (range(index), None)).collect();
-        let chosen: Vec<usize> = (0..boxes.len()).filter(|&index| wanted(found[index].0)).collect();
-        let probed = ranges.as_ref().filter(|_| self.program.info.probes > 0);
-        let parts: Vec<Box3> = chosen.iter().map(|&index| boxes[index]).collect();
-        let mut regions = Vec::with_capacity(chosen.len());
-        self.regions(region, &parts, probed.map(|ranges| ranges.probes(&chosen)), &mut regions)?;
+        let mut found: Vec<(Range, Option<Region>)> = Vec::with_capacity(boxes.len());
+        let mut chosen = Vec::new();
+        let mut wants = |index: usize, range: Range| {
+            found.push((range, None));
+            chosen.extend(wanted(range).then_some(index));
+            wanted(range)
+        };
+        let mut regions = Vec::new();
+        self.divided(region, boxes, &mut wants, &mut regions)?;
         for (index, region) in chosen.into_iter().zip(regions) {
             found[index].1 = Some(region);
         }

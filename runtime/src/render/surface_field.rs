@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::renderer::Renderer;
-use crate::boxes::{Box3, Divisible, Range};
 use crate::error::EvalError;
 use crate::mesh::{Field, FieldWork};
-use crate::prune::Region;
+use crate::prune::{Pruned, Pruner, Region};
 
 /// The field of a renderer's model.
 pub struct SurfaceField<'a> {
@@ -25,30 +24,9 @@ impl<'a> SurfaceField<'a> {
     }
 }
 
-impl Divisible for SurfaceField<'_> {
-    type Error = EvalError;
-    type Region = Region;
-
-    fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
-        self.renderer.pruner.region(bounds)
-    }
-
-    fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
-        self.renderer.pruner.ranges(region, boxes, ranges)
-    }
-
-    fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        self.renderer.pruner.narrow(region, boxes, parts)
-    }
-
-    fn split(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        wants: &mut dyn FnMut(usize, Range) -> bool,
-        parts: &mut Vec<Region>,
-    ) -> Result<(), EvalError> {
-        self.renderer.pruner.split(region, boxes, wants, parts)
+impl Pruned for SurfaceField<'_> {
+    fn pruner(&self) -> &Pruner {
+        &self.renderer.pruner
     }
 }
 
