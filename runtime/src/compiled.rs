@@ -32,6 +32,7 @@ use crate::span::span;
 
 use patch::PresentPrograms;
 pub use task::Task;
+pub(crate) use task::mesh_needs;
 
 /// A compiled model: programs for whatever is asked of it.
 ///
@@ -117,6 +118,19 @@ pub(crate) enum Need {
     Answers(PointScope, Query),
     /// Ranges of the field in boxes.
     Ranges,
+    /// Gradients in regions, and what tells which operands decide, which is made of their program.
+    Decisions,
+}
+
+impl Need {
+    /// What the program answers; `None`: ranges.
+    fn query(self) -> Option<Query> {
+        match self {
+            Self::Answers(_, query) => Some(query),
+            Self::Decisions => Some(Query::GRADIENT),
+            Self::Ranges => None,
+        }
+    }
 }
 
 /// The place of a program.
@@ -133,12 +147,24 @@ impl<T> Default for ProgramSlot<T> {
 }
 
 impl<T: ModelProgram> ProgramSlot<T> {
-    /// The program. Whoever is first makes it; the others wait.
-    fn get_or_make(
+    /// The program. Whoever is first makes it of what was lowered; the others wait.
+    ///
+    /// Lowering gives work to the pool, and a thread that waits for the pool may take a task that asks for
+    /// this very program. So whoever finds no program lowers the model first, and waits for nobody while it
+    /// makes the program.
+    fn get_or_make<L>(
         &self,
-        make: impl FnOnce(Option<&Arc<Kernel>>) -> Result<Arc<T>, CompileError>,
+        lower: impl FnOnce() -> L,
+        make: impl FnOnce(L, Option<&Arc<Kernel>>) -> Result<Arc<T>, CompileError>,
     ) -> Result<&Arc<T>, CompileError> {
-        self.made.get_or_init(|| make(self.earlier.as_ref())).as_ref().map_err(Clone::clone)
+        let made = match self.made.get() {
+            Some(made) => made,
+            None => {
+                let lowered = lower();
+                self.made.get_or_init(|| make(lowered, self.earlier.as_ref()))
+            }
+        };
+        made.as_ref().map_err(Clone::clone)
     }
 
     /// The program, if it has been made and could be.
@@ -263,7 +289,12 @@ impl Compiled {
     /// Those of the first program of the list that cannot be had.
     pub(crate) fn prepare(&self, needs: &[Need]) -> Result<(), CompileError> {
         watch::stoppable(|| {
-            let missing: Vec<Need> = needs.iter().copied().filter(|need| !self.is_made(*need)).collect();
+            let mut missing: Vec<Need> = Vec::with_capacity(needs.len());
+            for &need in needs {
+                if !self.is_made(need) && !missing.contains(&need) {
+                    missing.push(need);
+                }
+            }
             if !missing.is_empty() {
                 let lowering = Lowering::with(self.tree(), &PoolWorkers);
                 // What went wrong is kept, and told below.
@@ -286,16 +317,24 @@ impl Compiled {
     /// sharply. It has the rows and the numbers of the gradient's program for regions: the field's has terms
     /// left out that only the gradient needs.
     pub(crate) fn decisions(&self) -> Result<Option<Decisions>, CompileError> {
-        let slopes = self.answers(PointScope::Regions, Query::GRADIENT)?;
+        watch::stoppable(|| self.decisions_of(None))?
+    }
+
+    fn decisions_of<'t>(
+        &'t self,
+        lowering: Option<&Lowering<'t>>,
+    ) -> Result<Option<Decisions>, CompileError> {
+        let slopes = self.answers_of(PointScope::Regions, Query::GRADIENT, lowering)?;
         let Some(function) = pass::decisions(&slopes.bound.kernel.lowered) else { return Ok(None) };
-        let program = self.0.decisions.get_or_make(|earlier| {
+        let make = |(), earlier: Option<&Arc<Kernel>>| {
             let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(Query::GRADIENT));
             let kernel = compiler.kernel(function.clone(), purpose, earlier).or_else(|_| {
                 // It is several times as long as the field's, which the engine has taken.
                 compiler.clone().on_engine(Engine::Lanes).kernel(function, purpose, None)
             })?;
             Ok(Arc::new(DecisionProgram(compiler.bind(&kernel, Arc::clone(&slopes.bound.lowered)))))
-        })?;
+        };
+        let program = self.0.decisions.get_or_make(|| (), make)?;
         Ok(Some(Decisions(Arc::clone(program))))
     }
 
@@ -322,6 +361,8 @@ impl Compiled {
         match need {
             Need::Answers(scope, query) => self.slot(scope, query).made.get().is_some(),
             Need::Ranges => self.0.ranges.made.get().is_some(),
+            // What is made of a program takes no lowering.
+            Need::Decisions => self.slot(PointScope::Regions, Query::GRADIENT).made.get().is_some(),
         }
     }
 
@@ -329,6 +370,7 @@ impl Compiled {
         match need {
             Need::Answers(scope, query) => self.answers_of(scope, query, lowering).map(drop),
             Need::Ranges => self.ranges_of(lowering).map(drop),
+            Need::Decisions => self.decisions_of(lowering).map(drop),
         }
     }
 
@@ -345,21 +387,28 @@ impl Compiled {
         query: Query,
         lowering: Option<&Lowering<'t>>,
     ) -> Result<&'t Arc<AnswerProgram>, CompileError> {
+        let slot = self.slot(scope, query);
         let lowered = || self.lowered(lowering, |lowering| lowering.answers(query));
         match scope {
-            PointScope::Anywhere => self.slot(scope, query).get_or_make(|earlier| {
-                if !self.0.compiler.may_straighten(self.tree()) {
-                    return self.answers_of(PointScope::Regions, query, lowering).cloned();
-                }
-                self.anywhere(query, lowered()?, earlier)
-            }),
-            PointScope::Regions => self.slot(scope, query).get_or_make(|earlier| {
+            PointScope::Anywhere if self.0.compiler.may_straighten(self.tree()) => {
+                slot.get_or_make(lowered, |lowered, earlier| self.anywhere(query, lowered?, earlier))
+            }
+            PointScope::Anywhere => {
+                let regional = || self.answers_of(PointScope::Regions, query, lowering).cloned();
+                slot.get_or_make(regional, |program, _| program)
+            }
+            PointScope::Regions => {
                 let straight = self.slot(PointScope::Anywhere, query).present();
                 match straight.filter(|program| program.is_straight()) {
-                    Some(straight) => self.unstraightened(&self.0.compiler, straight, earlier),
-                    None => self.program(query, lowered()?, earlier),
+                    Some(straight) => slot.get_or_make(
+                        || straight,
+                        |straight, earlier| self.unstraightened(&self.0.compiler, straight, earlier),
+                    ),
+                    None => {
+                        slot.get_or_make(lowered, |lowered, earlier| self.program(query, lowered?, earlier))
+                    }
                 }
-            }),
+            }
         }
     }
 
@@ -378,7 +427,8 @@ impl Compiled {
             }
             None => {
                 let slot = self.slot(PointScope::Regions, query);
-                slot.get_or_make(|earlier| self.program(query, lowered, earlier)).cloned()
+                slot.get_or_make(|| lowered, |lowered, earlier| self.program(query, lowered, earlier))
+                    .cloned()
             }
         }
     }
@@ -414,9 +464,9 @@ impl Compiled {
         &'t self,
         lowering: Option<&Lowering<'t>>,
     ) -> Result<&'t Arc<RangeProgram>, CompileError> {
-        self.0.ranges.get_or_make(|earlier| {
-            let ranges = self.lowered(lowering, Lowering::ranges)?;
-            let program = RangeProgram::new(&self.0.compiler, ranges, earlier);
+        let lowered = || self.lowered(lowering, Lowering::ranges);
+        self.0.ranges.get_or_make(lowered, |ranges, earlier| {
+            let program = RangeProgram::new(&self.0.compiler, ranges?, earlier);
             program.map(Arc::new).map_err(|error| self.placed(error))
         })
     }

@@ -2,7 +2,7 @@
 //! is that nobody asks for.
 
 use jbt::boxes::Divisible as _;
-use jbt::build::point;
+use jbt::build::{particles, point};
 use jbt::contour::{Detail, Plane, Rectangle, Slicer};
 use jbt::sample::Sampler;
 use jbt::solid::Measure;
@@ -10,6 +10,7 @@ use jbt::{
     Box3, CheckedModel, CheckedTree, CompileCounters, Compiled, Compiler, Engine, Fineness, Model,
     Polygonize, Query, Ray, Render, Renderer, Solid, Tracer, Tree, Update,
 };
+use rayon::prelude::*;
 
 fn balls(count: usize, radius: f64) -> CheckedTree {
     let ball = |i: usize| point([0.4 * i as f64, 0.0, 0.0], radius).color([1.0, 0.5, 0.0]);
@@ -218,5 +219,24 @@ fn patched_programs_are_those_of_the_model() {
         }
         let patched = compiler.counters().patched;
         assert!(patched >= 20, "operator {operator}: {patched} edits were patched");
+    }
+}
+
+/// Lowering gives the rows of particles to the threads of the pool. A thread that waits for them takes other
+/// work of the pool, which may ask for the same program.
+#[test]
+fn tasks_of_one_pool_share_a_program_that_the_pool_lowers() {
+    let positions: Vec<[f64; 3]> =
+        (0..320_000).map(|i| [f64::from(i % 40), f64::from(i / 40 % 40), f64::from(i / 1600)]).collect();
+    let tree = Model::new(particles(positions, 0.7)).check().expect("a good model");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(6).build().expect("threads");
+    for query in [Query::FIELD, Query::ALL].repeat(3) {
+        let compiled = Compiler::for_engine(Engine::Lanes).compile(&tree);
+        pool.install(|| {
+            (0..6).into_par_iter().with_max_len(1).for_each(|_| {
+                compiled.evaluator(query).expect("it compiles");
+                Tracer::of(&compiled, query).expect("it compiles");
+            });
+        });
     }
 }

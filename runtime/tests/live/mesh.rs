@@ -12,6 +12,8 @@ use jbt::{
     PolygonizeError, Tree,
 };
 
+use jbt_testkit::skip::at_length;
+
 use crate::scene::{Edited, Given, balls, bits, edit};
 
 /// What the buffers hold, as somebody has copied it by the reports of edits alone.
@@ -173,7 +175,8 @@ fn two_hundred_edits_of_a_region() {
 
 #[test]
 fn edits_by_other_engines() {
-    follow(Engine::Scalar, (3, 30), 50, cells(0.12));
+    // The reference takes a second for each edit on a lattice of the others' fineness.
+    follow(Engine::Scalar, (3, 30), if at_length() { 50 } else { 25 }, cells(0.2));
     if !Engine::Jit.backends().is_empty() {
         follow(Engine::Jit, (4, 30), 100, cells(0.07));
     }

@@ -37,17 +37,18 @@ fn small_parts_of_large_models_have_the_rows_that_a_pass_finds() {
         let before: Vec<Region> = boxes.iter().map(|bounds| region(&pruner, bounds)).collect();
         let evaluator = compiler.evaluator(&tree, Query::ALL).expect("it compiles");
         let model = large(operator, 6000, 0.0);
-        let mut rows = 0;
-        for (bounds, found) in boxes.iter().zip(&before) {
-            // The first 64 questions are answered by passes.
+        let (mut rows, mut asked) = (0, 0);
+        // The first 64 questions are answered by passes, as all are of a fresh pruner: some of them are enough.
+        for (bounds, found) in boxes.iter().zip(&before).skip(if at_length() { 0 } else { 56 }) {
             let fresh = Pruner::new(&compiler, &tree).expect("it compiles");
             assert_eq!(found.selection(), region(&fresh, bounds).selection(), "{operator} {bounds:?}");
             let points = points_in(&mut rng, bounds, 4);
             compare(operator, &model, &evaluator, found, &points);
             rows += found.rows();
+            asked += 1;
         }
-        println!("{operator}: {} rows of {} in a box", rows / boxes.len(), pruner.everywhere().rows());
-        assert!(rows / boxes.len() < 40, "few rows reach a small box");
+        println!("{operator}: {} rows of {} in a box", rows / asked, pruner.everywhere().rows());
+        assert!(rows / asked < 40, "few rows reach a small box");
         let all = region(&pruner, &whole);
         assert!(operator != "sum" || all.rows() > 6000, "in all of the model all rows matter");
         // The tree follows an edit.
