@@ -1,6 +1,10 @@
 //! One compiled model: whatever looks at it, each program is compiled and given its numbers once, and nothing
 //! is that nobody asks for.
 
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
 use jbt::boxes::Divisible as _;
 use jbt::build::{particles, point};
 use jbt::contour::{Detail, Plane, Rectangle, Slicer};
@@ -114,7 +118,7 @@ fn users_count_their_own_work() {
 #[test]
 fn threads_wait_for_one_program() {
     let compiled = Compiler::for_engine(Engine::Lanes).compile(&balls(200, 0.7));
-    std::thread::scope(|scope| {
+    thread::scope(|scope| {
         for _ in 0..8 {
             scope.spawn(|| Tracer::of(&compiled, Query::ALL).expect("it compiles"));
         }
@@ -230,13 +234,19 @@ fn tasks_of_one_pool_share_a_program_that_the_pool_lowers() {
         (0..320_000).map(|i| [f64::from(i % 40), f64::from(i / 40 % 40), f64::from(i / 1600)]).collect();
     let tree = Model::new(particles(positions, 0.7)).check().expect("a good model");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(6).build().expect("threads");
-    for query in [Query::FIELD, Query::ALL].repeat(3) {
-        let compiled = Compiler::for_engine(Engine::Lanes).compile(&tree);
-        pool.install(|| {
-            (0..6).into_par_iter().with_max_len(1).for_each(|_| {
-                compiled.evaluator(query).expect("it compiles");
-                Tracer::of(&compiled, query).expect("it compiles");
+    let (done, is_done) = mpsc::channel();
+    // Tasks that wait for each other never end: they are left to a thread that nobody waits for.
+    thread::spawn(move || {
+        for query in [Query::FIELD, Query::ALL].repeat(3) {
+            let compiled = Compiler::for_engine(Engine::Lanes).compile(&tree);
+            pool.install(|| {
+                (0..6).into_par_iter().with_max_len(1).for_each(|_| {
+                    compiled.evaluator(query).expect("it compiles");
+                    Tracer::of(&compiled, query).expect("it compiles");
+                });
             });
-        });
-    }
+        }
+        done.send(()).expect("the test waits");
+    });
+    is_done.recv_timeout(Duration::from_mins(5)).expect("no task waits for itself");
 }

@@ -14,7 +14,7 @@ use common::answers;
 use jbt::{Compiler, Points, Query};
 use jbt_testkit::bits::assert_same;
 use jbt_testkit::random::Random;
-use jbt_testkit::skip::at_length;
+use jbt_testkit::skip::short_or_long;
 
 /// These tests look at the memory of the whole process: one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
@@ -37,7 +37,7 @@ fn writable_and_executable() -> usize {
 #[test]
 fn compiling_and_dropping_keeps_the_size_of_the_process() {
     let _alone = ALONE.lock();
-    let cycles = if at_length() { 100_000 } else { 1_000 };
+    let cycles = short_or_long([1_000, 100_000]);
     let trees: Vec<_> = (0..8_u64)
         .map(|shape| {
             Random::new(shape, shape + 1).model(1 + shape as usize % 3).check().expect("a good model")
@@ -62,7 +62,7 @@ fn compiling_and_dropping_keeps_the_size_of_the_process() {
 #[test]
 fn eight_threads_ask_two_models_that_change() {
     let _alone = ALONE.lock();
-    let lasts = Duration::from_secs(if at_length() { 60 } else { 2 });
+    let lasts = Duration::from_secs(short_or_long([2, 60]));
     let points: Points = (0..40).map(|n| [n as f32 * 0.05 - 1.0, 0.2, n as f32 * 0.01]).collect();
     // Versions of two models: odd ones have another shape.
     let versions: Vec<Vec<_>> = (0..2_u64)

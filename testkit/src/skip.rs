@@ -19,6 +19,13 @@ pub fn at_length() -> bool {
     std::env::var_os("JBT_FAULTS").is_some_and(|value| value == "1")
 }
 
+/// One of two numbers, such as those of random cases: the first one in short, the second one [at
+/// length](at_length).
+#[must_use]
+pub fn short_or_long<T>([short, long]: [T; 2]) -> T {
+    if at_length() { long } else { short }
+}
+
 /// Says that the running test is skipped, and why: in words that name what is missing and how to get it.
 pub fn skip(reason: &str) {
     let program = program();

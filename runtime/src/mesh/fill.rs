@@ -2,7 +2,8 @@
 //!
 //! A vector of zeros that one thread makes is written twice, and the first time by the wrong thread: the
 //! system finds its pages one after the other, and each line of memory goes from one processor to another.
-//! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it.
+//! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it, or takes
+//! [values](VectorPart::fill) that are there.
 
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -3,7 +3,7 @@
 use jbt_model::query::Query;
 use smallvec::SmallVec;
 
-use crate::compiled::{Compiled, Decisions, Need, Task, mesh_needs};
+use crate::compiled::{Compiled, Decisions, mesh_needs};
 use crate::counter::Counters;
 use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
@@ -26,7 +26,7 @@ impl Kernels {
     /// Those of a compiled model.
     pub(crate) fn new(compiled: &Compiled, sharp: bool) -> Result<Self, CompileError> {
         let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
-        compiled.prepare(&if sharp { mesh_needs(Need::Decisions) } else { Task::Mesh.needs() })?;
+        compiled.prepare(&mesh_needs(sharp))?;
         let [field, gradient, all] = queries.map(|query| compiled.regional(query));
         let decisions = if sharp { compiled.decisions()? } else { None };
         Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all?, decisions })

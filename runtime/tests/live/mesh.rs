@@ -12,7 +12,7 @@ use jbt::{
     PolygonizeError, Tree,
 };
 
-use jbt_testkit::skip::at_length;
+use jbt_testkit::skip::short_or_long;
 
 use crate::scene::{Edited, Given, balls, bits, edit};
 
@@ -175,8 +175,9 @@ fn two_hundred_edits_of_a_region() {
 
 #[test]
 fn edits_by_other_engines() {
-    // The reference takes a second for each edit on a lattice of the others' fineness.
-    follow(Engine::Scalar, (3, 30), if at_length() { 50 } else { 25 }, cells(0.2));
+    // An edit by the reference takes longer than all that the others do here.
+    let (edits, cell) = short_or_long([(25, 0.2), (50, 0.12)]);
+    follow(Engine::Scalar, (3, 30), edits, cells(cell));
     if !Engine::Jit.backends().is_empty() {
         follow(Engine::Jit, (4, 30), 100, cells(0.07));
     }

@@ -39,7 +39,7 @@ fn small_parts_of_large_models_have_the_rows_that_a_pass_finds() {
         let model = large(operator, 6000, 0.0);
         let (mut rows, mut asked) = (0, 0);
         // The first 64 questions are answered by passes, as all are of a fresh pruner: some of them are enough.
-        for (bounds, found) in boxes.iter().zip(&before).skip(if at_length() { 0 } else { 56 }) {
+        for (bounds, found) in boxes.iter().zip(&before).skip(short_or_long([56, 0])) {
             let fresh = Pruner::new(&compiler, &tree).expect("it compiles");
             assert_eq!(found.selection(), region(&fresh, bounds).selection(), "{operator} {bounds:?}");
             let points = points_in(&mut rng, bounds, 4);

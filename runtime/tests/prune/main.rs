@@ -28,11 +28,11 @@ use jbt_testkit::bits::same;
 use jbt_testkit::boxes;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, model, tree};
-use jbt_testkit::skip::at_length;
+use jbt_testkit::skip::short_or_long;
 use jbt_text::print;
 use rayon::prelude::*;
 
-// Of a run in short, and of one [at length](at_length).
+/// Random shapes: of a run in short, and of one at length; so are the others.
 const SHAPES: [u64; 2] = [150, 250];
 /// Boxes of each shape.
 const BOXES: [usize; 2] = [4, 10];
@@ -55,7 +55,7 @@ struct Tally {
 #[test]
 fn pruned_answers_have_the_bits_of_all_rows() {
     let (shapes, points) =
-        (count("JBT_PRUNE_SHAPES", SHAPES[usize::from(at_length())]), count("JBT_PRUNE_POINTS", POINTS));
+        (count("JBT_PRUNE_SHAPES", short_or_long(SHAPES)), count("JBT_PRUNE_POINTS", POINTS));
     let tally = Tally::default();
     (0..shapes).into_par_iter().for_each(|shape| try_shape(shape, points as usize, &tally));
     let Tally { points, all, selected, bounded, .. } = tally;
@@ -88,7 +88,7 @@ fn try_model(model: &Model, shape: u64, count: usize, tally: &Tally) {
     let evaluators = Query::EVERY.map(|query| compiler.evaluator(&tree, query).expect("the model compiles"));
     let mut rng = Rng::with_seed(shape);
     let whole = Box3::new([-3.0; 3], [3.0; 3]);
-    for round in 0..BOXES[usize::from(at_length())] {
+    for round in 0..short_or_long(BOXES) {
         let bounds = random_box(&mut rng, &whole);
         let mut region = pruner.region(bounds).expect("the box is proper");
         let mut bounds = bounds;
@@ -342,7 +342,7 @@ fn setting_a_parameter_is_an_edit_where_something_has_changed() {
     let compiler = Compiler::for_engine(Engine::Lanes);
     let whole = Box3::new([-3.0; 3], [3.0; 3]);
     let (mut edits, mut bounded) = (0, 0);
-    for shape in 0..count("JBT_PRUNE_SHAPES", SET[usize::from(at_length())]).min(SET[1]) {
+    for shape in 0..count("JBT_PRUNE_SHAPES", short_or_long(SET)).min(SET[1]) {
         let mut rng = Rng::with_seed(shape);
         let points = points_in(&mut rng, &whole, 200);
         let model = Random::new(shape, shape).model(1 + (shape % 23) as usize);
@@ -386,7 +386,7 @@ fn rows_that_come_to_an_intersection_matter_everywhere() {
 #[test]
 fn a_survey_is_ranges_and_regions_in_one() {
     let bits = |range: [f32; 2]| range.map(f32::to_bits);
-    for shape in 0..count("JBT_PRUNE_SHAPES", SHAPES[usize::from(at_length())]).min(60) {
+    for shape in 0..count("JBT_PRUNE_SHAPES", short_or_long(SHAPES)).min(60) {
         let tree = Random::new(shape, shape).model(12).check().expect("a good model");
         let pruner = Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles");
         let around = Box3::new([-2.0; 3], [2.0; 3]);

@@ -9,12 +9,12 @@ use jbt::tree::WeightOf;
 use jbt::{Box3, Compiler, Engine, Evaluator, Fineness, Model, Points, Polygonize, PolygonizeError, Query};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, tree};
-use jbt_testkit::skip::at_length;
+use jbt_testkit::skip::short_or_long;
 use rayon::prelude::*;
 
 use crate::{blocks, settings};
 
-/// Random models: of a run in short, and of one [at length](at_length).
+/// Random models: of a run in short, and of one at length.
 const SHAPES: [u64; 2] = [50, 200];
 
 #[derive(Default)]
@@ -28,7 +28,7 @@ struct Tally {
 /// All blocks, their meshes, and the answers to every query at points of them.
 #[test]
 fn every_block_of_random_models_has_the_bits_of_the_whole() {
-    let shapes = count("JBT_REMOTE_SHAPES", SHAPES[usize::from(at_length())]);
+    let shapes = count("JBT_REMOTE_SHAPES", short_or_long(SHAPES));
     let tally = Tally::default();
     (0..shapes).into_par_iter().for_each(|shape| {
         let leaves = 1 + (shape % 29) as usize;
