@@ -148,6 +148,11 @@ impl Bricks {
         self.cells.iter().step_by(8).copied()
     }
 
+    /// Where each cell is, by its number.
+    pub(crate) fn cells(&self) -> &[At] {
+        &self.cells
+    }
+
     /// Where a cell is.
     #[inline(always)]
     pub(crate) fn at(&self, number: u16) -> At {

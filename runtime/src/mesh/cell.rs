@@ -21,7 +21,7 @@
 mod cases;
 mod cycles;
 
-pub(crate) use cases::{CellCases, case};
+pub(crate) use cases::{CellCases, case, low_turns};
 pub(crate) use cycles::following;
 
 /// Marks an edge that the surface does not cross.
@@ -112,7 +112,9 @@ impl Sheets {
     pub(crate) const fn numbers(&self) -> SheetNumbers {
         let (mut numbers, mut edge) = (0, 0);
         while edge < 12 {
-            numbers |= (self.of_edge[edge] as u32 & 3) << (2 * edge);
+            if self.of_edge[edge] != NO_SHEET {
+                numbers |= (self.of_edge[edge] as u32) << (2 * edge);
+            }
             edge += 1;
         }
         SheetNumbers(numbers)
@@ -251,11 +253,32 @@ static DEFAULT: [Sheets; 256] = {
     sheets
 };
 
-/// For each crossed edge of a cell that has a quad, the number of its sheet: two bits each.
+/// For each crossed edge of a cell that has a quad, the number of its sheet: two bits each, and zero for all
+/// other edges. One more bit is a mark.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct SheetNumbers(u32);
 
 impl SheetNumbers {
+    const MARK: u32 = 24;
+
+    /// Whether all edges are on the first sheet.
+    #[inline(always)]
+    pub(crate) fn is_one(self) -> bool {
+        self.0 == 0
+    }
+
+    /// These with a mark of 0 or 1; they have none yet.
+    #[inline(always)]
+    pub(crate) fn with_mark(self, mark: u32) -> Self {
+        Self(self.0 | mark << Self::MARK)
+    }
+
+    /// The mark.
+    #[inline(always)]
+    pub(crate) fn mark(self) -> u32 {
+        self.0 >> Self::MARK
+    }
+
     /// The sheet of an edge; `place` is twice the edge's number.
     #[inline(always)]
     pub(crate) fn at(self, place: u32) -> u32 {

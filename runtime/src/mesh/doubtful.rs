@@ -63,7 +63,7 @@ impl VertexSet {
 
     /// 1 if a vertex is in it, else 0.
     #[inline(always)]
-    fn has(&self, vertex: u32) -> u64 {
+    pub(super) fn has(&self, vertex: u32) -> u64 {
         let vertex = vertex.wrapping_sub(self.first);
         self.bits.get(vertex as usize / 64).map_or(0, |word| word >> (vertex % 64) & 1)
     }
@@ -76,22 +76,18 @@ impl VertexSet {
         (bit == 1).then(|| (self.before[vertex as usize / 64] + lower.count_ones()) as usize)
     }
 
-    /// Those of these quads, counted from the first one, that have a vertex of the set.
+    /// Some quads by their numbers, if they have a vertex of the set.
     pub(crate) fn quads(
         &self,
-        pairs: &[[[u32; 3]; 2]],
-        first: usize,
+        quads: impl Iterator<Item = (usize, [[u32; 3]; 2])>,
         positions: &[[f32; 3]],
-    ) -> Vec<DoubtfulQuad> {
-        if self.is_empty() {
-            return Vec::new();
-        }
+    ) -> impl Iterator<Item = DoubtfulQuad> {
         // Whatever the diagonal is, these are the four corners: see `halves`.
-        let has_any = |[[q, r, _], [_, s, p]]: &[[u32; 3]; 2]| {
-            self.has(*p) | self.has(*q) | self.has(*r) | self.has(*s) == 1
+        let has_any = |[[q, r, _], [_, s, p]]: [[u32; 3]; 2]| {
+            self.has(p) | self.has(q) | self.has(r) | self.has(s) == 1
         };
-        let found = (first..).zip(pairs).filter(|(_, pair)| has_any(pair));
-        found.map(|(quad, pair)| DoubtfulQuad::new(quad, *pair, positions)).collect()
+        let found = quads.filter(move |&(_, pair)| has_any(pair));
+        found.map(|(quad, pair)| DoubtfulQuad::new(quad, pair, positions))
     }
 }
 
@@ -223,7 +219,7 @@ mod tests {
             let mut mesh = Mesh { positions: positions.clone(), ..Mesh::default() };
             mesh.normals = vec![[0.0; 3], [0.0; 3], [0.0; 3], [0.0, 0.0, -1.0]];
             let set = VertexSet::new(0, 4, [3].into_iter());
-            let mut quads = set.quads(&[before], 0, &positions);
+            let mut quads: Vec<_> = set.quads([(0, before)].into_iter(), &positions).collect();
             mesh.triangles = now.to_vec();
             let mut hook = |_: f32| true;
             let progress = Progress::new(&mut hook, 1.0);

@@ -70,6 +70,17 @@ impl<T: Copy + Default> FilledVector<T> {
 }
 
 impl<'a, T: Copy + Default> VectorPart<'a, T> {
+    /// Takes the next places from the part. Few at a time are still in the cache when their zeros are
+    /// written over.
+    ///
+    /// # Panics
+    /// There are fewer.
+    pub(super) fn take(&mut self, count: usize) -> Self {
+        let (room, rest) = std::mem::take(&mut self.room).split_at_mut(count);
+        self.room = rest;
+        Self { room, opened: self.opened }
+    }
+
     /// The places of the part, as zeros.
     pub(super) fn open(self) -> &'a mut [T] {
         for place in &mut *self.room {
@@ -94,11 +105,12 @@ mod tests {
     #[test]
     fn parts_make_the_whole() {
         let mut vector = FilledVector::<u32>::new(12).expect("some bytes");
-        let [first, second] = vector.parts(&[0, 1, 1, 4], 2, 3).try_into().ok().expect("two parts");
+        let [first, mut second] = vector.parts(&[0, 1, 1, 4], 2, 3).try_into().ok().expect("two parts");
         let places = first.open();
         assert_eq!(places, [0; 3]);
         places.fill(1);
-        second.fill(&[2, 3, 4, 5, 6, 7, 8, 9, 10]);
+        second.take(2).open().copy_from_slice(&[2, 3]);
+        second.fill(&[4, 5, 6, 7, 8, 9, 10]);
         assert_eq!(vector.finish(), [1, 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
         assert!(FilledVector::<u32>::few(0).finish().is_empty());
         let too_many = FilledVector::<u32>::new(usize::MAX / 4).err();

@@ -66,14 +66,13 @@ pub(crate) fn sample<F: Field>(
         values.parts(&starts, group, 1).into_iter().zip(inside.parts(&starts, group, 1)).collect();
     let total = groups.len();
     MeshStage::Lattice.begin(progress)?;
-    let of_group = |points: &mut BrickPoints, (index, (values, inside)): (usize, SamplePart<'_>)| {
+    let of_group = |points: &mut BrickPoints, (index, (mut values, mut inside)): (usize, SamplePart<'_>)| {
         span!("samples of some bricks");
-        let (values, inside) = (values.open(), inside.open());
         let first = index * group;
         for brick in first..bricks.len().min(first + group) {
-            let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
+            let count = starts[brick + 1] - starts[brick];
             points.collect(bricks, brick, &rims[brick]);
-            let (values, inside) = (&mut values[mine.clone()], &mut inside[mine]);
+            let (values, inside) = (values.take(count).open(), inside.take(count).open());
             let ask = |[x, y, z]: [&[f32]; 3], values: &mut [f32]| {
                 field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)
             };
@@ -108,9 +107,18 @@ fn compare(iso: f32, values: &[f32], inside: &mut [u8]) {
 #[inline(always)]
 pub(crate) fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
     let layer = stride * stride;
-    let table = &table[at..at + layer + stride + 2];
-    let (front, back) = (&table[..stride + 2], &table[layer..]);
-    [front[0], front[1], front[stride], front[stride + 1], back[0], back[1], back[stride], back[stride + 1]]
+    let table = &table[at..][..layer + stride + 2];
+    let (next, last) = (layer + 1, layer + stride);
+    [
+        table[0],
+        table[1],
+        table[stride],
+        table[stride + 1],
+        table[layer],
+        table[next],
+        table[last],
+        table[last + 1],
+    ]
 }
 
 /// Where the classes on the rim that a brick owns begin among its values, and the number of points that it

@@ -8,7 +8,7 @@ use crate::parallel::*;
 use crate::span::span;
 
 use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
-use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
+use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, low_turns, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
 use super::doubtful::{DoubtfulQuad, VertexSet};
 use super::fill::{FilledVector, NoMemory, VectorPart};
@@ -34,30 +34,36 @@ pub(crate) fn triangles<E: Send>(
     span!("triangles");
     let group = bricks.group();
     let groups = triangles.parts(&crossings.quads, group, 2);
-    let fill = |around: &mut Around, (index, triangles): (usize, VectorPart<'_, [u32; 3]>)| {
+    let fill = |room: &mut MarkedQuads, (index, mut triangles): (usize, VectorPart<'_, [u32; 3]>)| {
         span!("triangles of some bricks");
         go_on()?;
-        let all = triangles.open().as_chunks_mut().0;
-        let (first, mut rest) = (index * group, &mut *all);
+        let (around, marked) = room;
+        let (first, mut found) = (index * group, Vec::new());
         for brick in first..bricks.len().min(first + group) {
             let count = crossings.quads[brick + 1] - crossings.quads[brick];
             if count == 0 {
                 continue;
             }
-            let (pairs, after) = std::mem::take(&mut rest).split_at_mut(count);
-            rest = after;
-            around.fill(bricks, crossings, brick);
-            split_quads(around, positions, pairs);
+            around.fill(bricks, (crossings, doubtful), brick);
+            let pairs = &mut *triangles.take(2 * count).open().as_chunks_mut().0;
+            marked.resize(marked.len().max(count), 0);
+            let marks = split_quads(around, positions, pairs, marked);
+            let quads = marked[..marks].iter().map(|&quad| quad as usize);
+            let quads = quads.map(|quad| (crossings.quads[brick] + quad, pairs[quad]));
+            found.extend(doubtful.quads(quads, positions));
         }
-        Ok(doubtful.quads(all, crossings.quads[first], positions))
+        Ok(found)
     };
     let found: Result<Vec<Vec<DoubtfulQuad>>, E> = scatter(|_| {
         let groups = in_pieces(groups.into_par_iter().enumerate());
-        groups.map_init(|| Around::new(bricks), fill).collect()
+        groups.map_init(|| (Around::new(bricks), Vec::new()), fill).collect()
     });
     let found = found?.into_iter().flatten().collect();
     Ok((triangles.finish(), found))
 }
+
+/// What finds the quads of a brick, and the numbers of those at marked cells.
+type MarkedQuads = (Around, Vec<u32>);
 
 /// A crossed cell: its first vertex, and the sheets of its edges.
 #[derive(Clone, Copy, Default)]
@@ -67,16 +73,18 @@ struct CellVertices {
 }
 
 /// What makes entries of the cells of a brick.
-struct CellEntry {
+struct CellEntry<'a> {
     /// The brick's first vertex.
     vertex: u32,
     sides: BrickSides,
+    /// Cells with a vertex of the set are marked, and maybe some that share their sides with others.
+    marked: &'a VertexSet,
 }
 
-impl CellEntry {
-    fn new(bricks: &Bricks, crossings: &Crossings, brick: usize) -> Self {
+impl<'a> CellEntry<'a> {
+    fn new(bricks: &Bricks, (crossings, marked): (&Crossings, &'a VertexSet), brick: usize) -> Self {
         let vertex = crossings.vertices[brick] as u32;
-        Self { vertex, sides: BrickSides::new(bricks, brick) }
+        Self { vertex, sides: BrickSides::new(bricks, brick), marked }
     }
 
     #[inline(always)]
@@ -87,7 +95,13 @@ impl CellEntry {
         } else {
             sheets_with_quads(cell.signs, cell.flips, sides).numbers()
         };
-        CellVertices { vertex: self.vertex + cell.vertex, sheets }
+        let vertex = self.vertex + cell.vertex;
+        let mark = if sheets.is_one() {
+            self.marked.has(vertex)
+        } else {
+            (vertex..vertex.saturating_add(4)).fold(0, |any, vertex| any | self.marked.has(vertex))
+        };
+        CellVertices { vertex, sheets: sheets.with_mark(mark as u32) }
     }
 }
 
@@ -137,8 +151,8 @@ impl Around {
     }
 
     /// Finds the quads of a brick, and fills the part of the table that they read.
-    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) {
-        let lows = self.enter_own(bricks, crossings, brick);
+    fn fill(&mut self, bricks: &Bricks, of: (&Crossings, &VertexSet), brick: usize) {
+        let lows = self.enter_own(bricks, of, brick);
         // The cells around an edge are back along two axes at most.
         for below in 1..7 {
             if (0..8).all(|low| lows >> low & 1 == 0 || low & below != below) {
@@ -151,7 +165,7 @@ impl Around {
                 let last = number(is_below.map(|is| if is { bricks.edge - 1 } else { 0 }));
                 let back: usize =
                     (0..3).filter(|&axis| is_below[axis]).map(|axis| bricks.edge * self.steps[axis]).sum();
-                self.enter_layer(bricks, crossings, other as usize, last, self.first.wrapping_sub(back));
+                self.enter_layer(bricks, of, other as usize, last, self.first.wrapping_sub(back));
             }
         }
     }
@@ -159,27 +173,40 @@ impl Around {
     /// Enters the cells of a brick into the table, and finds its quads: crossed edges at the low corners of
     /// its cells with all four cells around them. Returns the low sides of the brick that these cells touch,
     /// as a set of sets of axes.
-    fn enter_own(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
-        let enter = CellEntry::new(bricks, crossings, brick);
+    fn enter_own(
+        &mut self,
+        bricks: &Bricks,
+        (crossings, marked): (&Crossings, &VertexSet),
+        brick: usize,
+    ) -> u8 {
+        /// For each set of low sides of the lattice that a cell touches: the edges at its low corner, a bit
+        /// for each axis, that touch no other than the side across.
+        const INNER: [u8; 8] = [0b111, 0b001, 0b010, 0, 0b100, 0, 0, 0];
+        /// Room for the quads of a cell, and one that is not to stay.
+        const ROOM: usize = 4;
+        let enter = CellEntry::new(bricks, (crossings, marked), brick);
         let sides = bricks.sides(brick);
         let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
-        let cells = crossings.of(brick);
-        self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
-        // Without a branch, which would be mispredicted for every third edge: an entry that is not to stay is
-        // overwritten.
+        let (cells, places) = (crossings.of(brick), bricks.cells());
+        let Self { table, quads, first, .. } = self;
+        quads.resize(quads.len().max(3 * cells.len() + ROOM), 0);
+        // Entries that are not to stay are overwritten: a branch would be mispredicted for every third cell.
         let (mut count, mut lows) = (0, 0);
         for cell in cells {
-            let at = bricks.at(cell.number);
-            let place = at.in_table() + self.first;
-            self.table[place] = enter.vertices(cell, at);
+            let at = places[usize::from(cell.number)];
+            let place = at.in_table() + *first;
+            table[place] = enter.vertices(cell, at);
             let low = at.lows();
             lows |= 1 << low;
-            for axis in 0..3 {
-                let end = cell.signs >> (1 << axis) & 1;
-                self.quads[count] = 8 * place as u32 + 2 * axis as u32 + u32::from(end);
-                let is_there = low & cut & !(1 << axis) == 0;
-                count += usize::from((cell.signs ^ end) & 1 == 1 && is_there);
+            let room: &mut [u32; ROOM] = quads[count..].first_chunk_mut().expect("room");
+            let (turns, mut of_cell) = low_turns(cell.signs);
+            for (quad, turn) in room.iter_mut().zip(turns) {
+                *quad = 8 * place as u32 + u32::from(turn);
             }
+            if low & cut != 0 {
+                of_cell = keep_inner(room, of_cell, INNER[usize::from(low & cut)]);
+            }
+            count += of_cell;
         }
         debug_assert_eq!(count, crossings.quads[brick + 1] - crossings.quads[brick]);
         lows
@@ -187,9 +214,18 @@ impl Around {
 
     /// Enters into the table the cells of a brick whose number has all of these bits, relative to the brick's
     /// first cell.
-    fn enter_layer(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
-        let enter = CellEntry::new(bricks, crossings, brick);
+    fn enter_layer(
+        &mut self,
+        bricks: &Bricks,
+        (crossings, marked): (&Crossings, &VertexSet),
+        brick: usize,
+        bits: u16,
+        first: usize,
+    ) {
+        let enter = CellEntry::new(bricks, (crossings, marked), brick);
         let cells = crossings.of(brick);
+        // Ascending; the first one that may have all bits has no others.
+        let cells = &cells[cells.partition_point(|cell| cell.number < bits)..];
         // First their indices, without a branch, which would be mispredicted for every third cell.
         let mut count = 0;
         self.chosen.resize(self.chosen.len().max(cells.len()), 0);
@@ -213,7 +249,7 @@ impl Around {
         brick: usize,
         mut visit: impl FnMut(usize, usize, [(u32, u32); 4]),
     ) {
-        self.fill(bricks, crossings, brick);
+        self.fill(bricks, (crossings, &VertexSet::NONE), brick);
         for quad in 0..crossings.quads[brick + 1] - crossings.quads[brick] {
             let code = self.quads[quad];
             let (at, turn) = ((code / 8) as usize, self.turns[(code % 8) as usize]);
@@ -229,13 +265,44 @@ impl Around {
     }
 }
 
-/// The two triangles of each quad of a brick.
-#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn split_quads(around: &Around, positions: &[[f32; 3]], pairs: &mut [[[u32; 3]; 2]]) {
-    for (pair, &quad) in pairs.iter_mut().zip(&around.quads) {
-        let (at, turn) = ((quad / 8) as usize, around.turns[(quad % 8) as usize]);
-        *pair = halves(turn.map(|corner| around.vertex(at, corner)), |vertex| positions[vertex as usize]);
+/// Keeps those of the first quads that are around an edge along one of these axes (a bit each). Returns how
+/// many.
+#[cold]
+fn keep_inner(quads: &mut [u32; 4], count: usize, axes: u8) -> usize {
+    let mut kept = 0;
+    for n in 0..count {
+        if axes >> (quads[n] % 8 / 2) & 1 == 1 {
+            quads[kept] = quads[n];
+            kept += 1;
+        }
     }
+    kept
+}
+
+/// The two triangles of each quad of a brick. The quads at marked cells are counted, and their numbers are
+/// written to `marked`, which has room for all.
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
+fn split_quads(
+    around: &Around,
+    positions: &[[f32; 3]],
+    pairs: &mut [[[u32; 3]; 2]],
+    marked: &mut [u32],
+) -> usize {
+    let mut count = 0;
+    for (number, (pair, &quad)) in (0..).zip(pairs.iter_mut().zip(&around.quads)) {
+        let (at, turn) = ((quad / 8) as usize, &around.turns[(quad % 8) as usize]);
+        let (mut vertices, mut is_marked) = ([0; 4], 0);
+        for (vertex, corner) in vertices.iter_mut().zip(turn) {
+            let cell = &around.table[at - corner.back as usize];
+            *vertex = cell.vertex + cell.sheets.at(corner.place);
+            is_marked |= cell.sheets.mark();
+        }
+        *pair = halves(vertices, |vertex| positions[vertex as usize]);
+        // Without a branch, as above.
+        marked[count] = number;
+        count += is_marked as usize;
+    }
+    count
 }
 
 /// Splits a quad along its shorter diagonal, or from its first vertex if they are equal.

@@ -37,14 +37,6 @@ use seed::SeedGroup;
 
 pub(super) use room::is_crowded;
 
-/// The parts of the mesh that some bricks write.
-struct MeshTarget<'a> {
-    positions: &'a mut [[f32; 3]],
-    normals: &'a mut [[f32; 3]],
-    /// For each attribute, its values.
-    attributes: Vec<&'a mut [f32]>,
-}
-
 /// Makes one vertex for each sheet of each crossed cell that has quads. A vertex whose gradient vanishes or
 /// is NaN has the normal zero.
 pub(crate) fn finish<F: Field>(
@@ -134,37 +126,27 @@ impl MeshVectors {
     }
 }
 
-impl<'a> MeshParts<'a> {
-    fn open(self) -> MeshTarget<'a> {
-        MeshTarget {
-            positions: self.positions.open(),
-            normals: self.normals.open(),
-            attributes: self.attributes.into_iter().map(VectorPart::open).collect(),
-        }
-    }
-}
-
 fn finish_group<F: Field>(
     (source, progress): (&VertexSource<'_, F>, &Progress<'_>),
     widths: &[usize],
     bricks: Range<usize>,
-    parts: MeshParts<'_>,
+    mut parts: MeshParts<'_>,
     batch: &mut VertexBatch,
 ) -> Result<Done, MeshError<F::Error>> {
     span!("vertices of some bricks");
     let starts = &source.crossings.vertices;
-    let (first, mut done, mut target) = (starts[bricks.start], Done::default(), parts.open());
+    let mut done = Done::default();
     for brick in bricks {
-        let range = starts[brick] - first..starts[brick + 1] - first;
-        if range.is_empty() {
+        let count = starts[brick + 1] - starts[brick];
+        if count == 0 {
             continue;
         }
-        batch.start(source, brick, range.len());
+        batch.start(source, brick, count);
         progress.breathe()?;
         let mut of_brick = batch.evaluate(source, brick, widths.iter().sum()).map_err(MeshError::Field)?;
         of_brick.sharp.iter_mut().for_each(|sharp| sharp.vertex += starts[brick] as u32);
         done = done.and(of_brick);
-        batch.write(&mut target, range, widths);
+        batch.write(&mut parts, widths);
         done.doubtful.extend(batch.doubtful.iter().map(|&vertex| (starts[brick] + vertex) as u32));
     }
     Ok(done)
@@ -204,10 +186,10 @@ impl VertexBatch {
         if is_sharp { Ok(done.and(self.sharpen(source, brick)?)) } else { Ok(done) }
     }
 
-    /// Writes the vertices to their range of the target, and records vertices without a normal.
-    fn write(&mut self, target: &mut MeshTarget<'_>, range: Range<usize>, widths: &[usize]) {
-        let normals = &mut target.normals[range.clone()];
-        let positions = &mut target.positions[range.clone()];
+    /// Writes the vertices to the next places of a mesh, and records vertices without a normal.
+    fn write(&mut self, parts: &mut MeshParts<'_>, widths: &[usize]) {
+        let normals = parts.normals.take(self.count).open();
+        let positions = parts.positions.take(self.count).open();
         if write_places((&self.points, positions), (&self.gradient, normals)) {
             let normals = normals.iter().enumerate();
             self.doubtful
@@ -216,10 +198,10 @@ impl VertexBatch {
             self.doubtful.dedup();
         }
         let mut rest = &self.attributes[..];
-        for (values, &width) in target.attributes.iter_mut().zip(widths) {
+        for (part, &width) in parts.attributes.iter_mut().zip(widths) {
             let (planes, after) = rest.split_at(width * self.count);
             rest = after;
-            let values = &mut values[range.start * width..range.end * width];
+            let values = part.take(width * self.count).open();
             match width {
                 1 => values.copy_from_slice(planes),
                 2 => interleave::<2>(planes, values),

@@ -69,3 +69,27 @@ static CASES: [CellCases; 256] = {
 pub(crate) fn case(signs: u8) -> CellCases {
     CASES[usize::from(signs)]
 }
+
+/// The crossed edges at the low corner of a cell, as numbers of turns: twice the axis, and one more if the
+/// edge's high end is inside. Four, of which this many count.
+#[inline(always)]
+pub(crate) fn low_turns(signs: u8) -> ([u8; 4], usize) {
+    static TURNS: [[u8; 4]; 256] = {
+        let mut turns = [[0; 4]; 256];
+        let mut signs = 0;
+        while signs < 256 {
+            let (mut count, mut axis) = (0, 0);
+            while axis < 3 {
+                let end = signs >> (1 << axis) & 1;
+                if (signs ^ end) & 1 == 1 {
+                    turns[signs][count] = (2 * axis + end) as u8;
+                    count += 1;
+                }
+                axis += 1;
+            }
+            signs += 1;
+        }
+        turns
+    };
+    (TURNS[usize::from(signs)], case(signs).quads())
+}

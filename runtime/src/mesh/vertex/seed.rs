@@ -38,9 +38,21 @@ impl Seeds {
     /// Puts a vertex into a lane.
     #[inline(always)]
     pub(super) fn put(&mut self, lane: usize, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
+        self.put_corners(lane, corners);
+        self.put_home(lane, sides, edges);
+    }
+
+    /// The field at the corners of the cell in a lane. (One half at a time stays in registers.)
+    #[inline(always)]
+    pub(super) fn put_corners(&mut self, lane: usize, corners: &[f32; 8]) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             lanes[lane] = *corner;
         }
+    }
+
+    /// The sides of the cell in a lane, and the edges of the vertex's sheet.
+    #[inline(always)]
+    pub(super) fn put_home(&mut self, lane: usize, sides: [[f32; 2]; 3], edges: SheetEdges) {
         for ([low, high], sides) in self.sides.iter_mut().zip(sides) {
             [low[lane], high[lane]] = sides;
         }
