@@ -34,7 +34,7 @@ use jbt_text::print;
 use rayon::prelude::*;
 
 /// Random shapes: of a run in short, and of one at length.
-const SHAPES: [u64; 2] = [120, 400];
+const SHAPES: [u64; 2] = [60, 400];
 const SETS: u64 = 10;
 
 /// What the oracle allows: f32 rounding of coordinates, rows and sums, times how steep the field may be.

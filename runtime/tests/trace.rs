@@ -20,6 +20,7 @@ use jbt_model::kind::NodeKind;
 use jbt_testkit::bits;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, tree};
+use jbt_testkit::skip::short_or_long;
 use jbt_testkit::vector::dot;
 use rayon::prelude::*;
 
@@ -355,7 +356,7 @@ struct Tally {
 
 #[test]
 fn random_models_are_hit_where_dense_sampling_says() {
-    let default = if cfg!(debug_assertions) { 12 } else { 300 };
+    let default = if cfg!(debug_assertions) { 12 } else { short_or_long([100, 300]) };
     let (trees, seed) = (count("JBT_TRACE_TREES", default), count("JBT_TRACE_SEED", 0));
     let rays = count("JBT_TRACE_RAYS", 100) as usize;
     let tally = Tally::default();
@@ -545,7 +546,7 @@ fn rays_hit_what_is_defined_without_boxes() {
 /// What tracing asks about: boxes around parts of rays side by side, in the region of a longer part.
 #[test]
 fn ranges_of_parts_of_rays_hold_the_fields_at_their_places() {
-    let models = if cfg!(debug_assertions) { 6 } else { 24 };
+    let models = if cfg!(debug_assertions) { 6 } else { short_or_long([8, 24]) };
     (0..models).into_par_iter().for_each(|seed| {
         let model = Random::new(seed, seed ^ 0xb0e5).model(1 + (seed % 17) as usize);
         let tree = model.check().expect("a random model is a good model");

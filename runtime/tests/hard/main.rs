@@ -2,7 +2,7 @@
 //! point outwards, and their volume is that of dense sampling, unless a warning names a part that is thinner
 //! than a cell.
 //!
-//! `JBT_HARD_SCENES` sets how many there are; the seeds begin at [`FIRST`].
+//! `JBT_HARD_SCENES` sets how many there are, 60 in short and 200 at length; the seeds begin at [`FIRST`].
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -14,6 +14,7 @@ use common::answers;
 use jbt::mesh::{Mesh, check_manifold};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
 use jbt_testkit::scene::{count, tree};
+use jbt_testkit::skip::short_or_long;
 use jbt_testkit::surface::{area_vector, corners, volume};
 use jbt_testkit::vector::{dot, minus};
 use rayon::prelude::*;
@@ -47,7 +48,7 @@ struct Found {
 
 #[test]
 fn hard_scenes_have_good_meshes() {
-    let count = count("JBT_HARD_SCENES", 200);
+    let count = count("JBT_HARD_SCENES", short_or_long([60, 200]));
     let found: Vec<Found> = (0..count).into_par_iter().map(|index| judge(FIRST + index)).collect();
     let faults: Vec<&String> = found.iter().flat_map(|found| &found.faults).collect();
     assert!(faults.is_empty(), "{} faults, first {:#?}", faults.len(), &faults[..faults.len().min(8)]);

@@ -33,11 +33,11 @@ use jbt_text::print;
 use rayon::prelude::*;
 
 /// Random shapes: of a run in short, and of one at length; so are the others.
-const SHAPES: [u64; 2] = [150, 250];
+const SHAPES: [u64; 2] = [80, 250];
 /// Boxes of each shape.
 const BOXES: [usize; 2] = [4, 10];
 /// Shapes whose parameters are set.
-const SET: [u64; 2] = [80, 200];
+const SET: [u64; 2] = [40, 200];
 const POINTS: u64 = 24;
 
 #[derive(Default)]

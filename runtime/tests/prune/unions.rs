@@ -155,7 +155,7 @@ fn program(rng: &mut Rng) -> Model {
 #[test]
 fn rows_of_programs_keep_the_bits() {
     let tally = Tally::default();
-    (0..count("JBT_PRUNE_UNIONS", short_or_long([100, 200]))).into_par_iter().for_each(|seed| {
+    (0..count("JBT_PRUNE_UNIONS", short_or_long([40, 200]))).into_par_iter().for_each(|seed| {
         try_model(&program(&mut Rng::with_seed(seed)), seed, 12, &tally);
     });
     let [rows, kept] = [tally.rows, tally.kept].map(AtomicU64::into_inner);

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::{blocks, settings};
 
 /// Random models: of a run in short, and of one at length.
-const SHAPES: [u64; 2] = [50, 200];
+const SHAPES: [u64; 2] = [25, 200];
 
 #[derive(Default)]
 struct Tally {

@@ -16,13 +16,15 @@
 use fastrand::Rng;
 use jbt::{CheckedTree, Engine, Points, Samples};
 use jbt_model::walk::{Sample, walk, walk_gradient};
+use jbt_testkit::skip::short_or_long;
 use jbt_testkit::vector::length;
 
 use super::Verdict;
 use crate::points;
 use crate::subject::Subject;
 
-const POINTS: usize = 10_000;
+/// Of a check in short, and of one at length.
+const POINTS: [usize; 2] = [2_500, 10_000];
 /// The step of differences: in f64 both the error of the formula (the square of it) and that of rounding
 /// (2^-53 over it) are below 1e-9.
 const STEP: f64 = 1e-5;
@@ -50,16 +52,17 @@ struct Slope {
 }
 
 pub fn check(subject: &Subject) -> Verdict {
-    let points = points::anywhere(&mut Rng::with_seed(4), &subject.bounds, POINTS);
+    let count = short_or_long(POINTS);
+    let points = points::anywhere(&mut Rng::with_seed(4), &subject.bounds, count);
     let samples = subject.answers(Engine::Lanes, &points);
     let mut slopes = Vec::new();
     for index in 0..points.len() {
         slopes.extend(compare(subject, &points, &samples, index)?);
     }
     let steep = slopes.iter().filter(|slope| length(slope.expected) > 0.0).count();
-    if 2 * slopes.len() < POINTS || 100 * steep < POINTS {
+    if 2 * slopes.len() < count || 100 * steep < count {
         let all = slopes.len();
-        return Err(format!("of {POINTS} points {all} are away from decisions, {steep} of them on a slope"));
+        return Err(format!("of {count} points {all} are away from decisions, {steep} of them on a slope"));
     }
     judge(&slopes)
 }

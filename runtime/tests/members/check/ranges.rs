@@ -5,6 +5,7 @@ use fastrand::Rng;
 use jbt::boxes::{ANYTHING, Divisible};
 use jbt::prune::Region;
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
+use jbt_testkit::skip::short_or_long;
 
 use super::Verdict;
 use super::engines::same_bits;
@@ -12,8 +13,8 @@ use crate::common::answers;
 use crate::points;
 use crate::subject::Subject;
 
-/// Boxes, each of so many parts, with so many points in each part.
-const BOXES: usize = 125;
+/// Boxes of a check in short and of one at length, each of so many parts, with so many points in each part.
+const BOXES: [usize; 2] = [40, 125];
 const PARTS: usize = 8;
 const POINTS: usize = 16;
 
@@ -45,7 +46,7 @@ fn regions(tree: &CheckedTree, bounds: &Box3, evaluators: &[Evaluator]) -> Resul
         Pruner::new(&Compiler::for_engine(Engine::Lanes), tree).map_err(|error| error.to_string())?;
     let rng = &mut Rng::with_seed(3);
     let mut bounded = 0;
-    for _ in 0..BOXES {
+    for _ in 0..short_or_long(BOXES) {
         let whole = points::part(rng, bounds);
         let region = pruner.region(whole).map_err(|error| error.to_string())?;
         let boxes: Vec<Box3> = (0..PARTS).map(|_| points::part(rng, &whole)).collect();
