@@ -369,7 +369,7 @@ fn leaving_out_what_may_be_changes_no_bit() {
     let mut rng = Rng::with_seed(5);
     let mut tally = Tally::default();
 
-    let models = short_or_long([150, 1000]);
+    let models = short_or_long([300, 1000]);
     for index in 0..models {
         let model = model(index, 2 + index as usize % 24, index % 3 == 0);
         let tree = model.check().expect("its numbers are ordinary");
