@@ -11,7 +11,7 @@ use super::engine::{CompiledFunction, Engine, Wish, compile};
 use super::optimise::{Purpose, optimise};
 use crate::error::{CompileError, EvalError};
 
-/// The code of one shape on an engine. It has no numbers: see [`Bound`].
+/// The code of one shape on an engine. It has no numbers: see [`BoundKernel`].
 pub(crate) struct Kernel {
     /// The function as it was lowered: what tells whether another model has the same shape.
     pub(crate) lowered: Function,

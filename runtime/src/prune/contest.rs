@@ -14,8 +14,8 @@
 //! field, gradient or attribute comes from it, and what is left out changes no bit. Rows that their supports
 //! leave out have gone before.
 //!
-//! The function of a row ([`RowFunction`]) has the ops of the program, so its range encloses every f32 that
-//! engines compute.
+//! The function of a row ([`RowFunction`](jbt_ir::RowFunction)) has the ops of the program, so its range
+//! encloses every f32 that engines compute.
 
 use std::sync::OnceLock;
 
