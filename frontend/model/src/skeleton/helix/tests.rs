@@ -1,5 +1,7 @@
 //! The helix against samples of it.
 
+use jbt_testkit::skip::short_or_long;
+
 use super::*;
 use crate::skeleton::{ROUNDING, testing};
 
@@ -94,7 +96,8 @@ fn brute_force(helix: &Helix, q: DVec3) -> f64 {
 fn the_error_is_as_stated() {
     let mut rng = fastrand::Rng::with_seed(3);
     let (mut worst, mut worst_plain, mut too_small, mut beyond) = (0.0_f64, 0.0_f64, 0.0_f64, [0_u32; 3]);
-    for _ in 0..2_000 {
+    let helices = short_or_long([600, 2_000]);
+    for _ in 0..helices {
         let helix = random(&mut rng);
         let size = helix.radius.max(helix.rise().abs());
         let pose = helix.pose();
@@ -123,7 +126,7 @@ fn the_error_is_as_stated() {
     assert!(worst_plain < 1e-7, "the plain search misses a minimum: {worst_plain}");
     assert!(too_small < 0.5 * ROUNDING * 2f64.powi(24), "too small by {too_small} units");
     assert!(worst <= 2f64.powi(-19), "{worst} of the size; {beyond:?} are beyond 1e-9, 1e-7, 1e-6");
-    assert!(beyond[1] < 1000, "{beyond:?} of 100000 are beyond 1e-9, 1e-7, 1e-6");
+    assert!(2 * beyond[1] < helices, "{beyond:?} of 50 points of {helices} helices are beyond 1e-9, 1e-7, 1e-6");
 }
 
 /// The rounding of a place does not grow with the turns.
