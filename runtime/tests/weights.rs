@@ -220,7 +220,7 @@ fn weights_of_random_models_are_parts_of_one() {
         models += 1;
     }
     assert!(
-        5 * models > 4 * seeds && asked_points > 26 * seeds && 10 * refused < seeds,
+        5 * models > 4 * seeds && 3 * asked_points > 80 * seeds && 10 * refused < seeds,
         "{models} {asked_points} {refused}"
     );
 }

@@ -148,7 +148,8 @@ impl Bricks {
         self.cells.iter().step_by(8).copied()
     }
 
-    /// Where each cell is, by its number.
+    /// Where each cell is, by its number. Loops that write hold this list; they would read its place anew for
+    /// each cell.
     pub(crate) fn cells(&self) -> &[At] {
         &self.cells
     }

@@ -62,16 +62,16 @@ impl<T: Copy + Default> FilledVector<T> {
     pub(super) fn finish(self) -> Vec<T> {
         let Self { mut values, length, opened } = self;
         assert_eq!(opened.into_inner(), length, "each part is opened");
-        // SAFETY: there is room for `length` values. The parts of the last division share no place, each
-        // counts its places once, when they are values, and they counted all.
+        // SAFETY: there is room for `length` values. The parts of the last division share no place, nor
+        // does what is taken from them; each counts its places once, when they are values, and they counted
+        // all.
         unsafe { values.set_len(length) };
         values
     }
 }
 
 impl<'a, T: Copy + Default> VectorPart<'a, T> {
-    /// Takes the next places from the part. Few at a time are still in the cache when their zeros are
-    /// written over.
+    /// Takes the next places from the part, so that whoever fills it brick by brick needs no ranges.
     ///
     /// # Panics
     /// There are fewer.

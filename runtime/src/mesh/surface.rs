@@ -72,6 +72,14 @@ struct CellVertices {
     sheets: SheetNumbers,
 }
 
+impl CellVertices {
+    /// The vertex at a corner of a quad that is in this cell.
+    #[inline(always)]
+    fn at(&self, corner: &Corner) -> u32 {
+        self.vertex + self.sheets.at(corner.place)
+    }
+}
+
 /// What makes entries of the cells of a brick.
 struct CellEntry<'a> {
     /// The brick's first vertex.
@@ -253,15 +261,18 @@ impl Around {
         for quad in 0..crossings.quads[brick + 1] - crossings.quads[brick] {
             let code = self.quads[quad];
             let (at, turn) = ((code / 8) as usize, self.turns[(code % 8) as usize]);
-            visit(quad, at - self.first, turn.map(|corner| (self.vertex(at, corner), corner.place / 2)));
+            visit(
+                quad,
+                at - self.first,
+                turn.map(|corner| (self.cell(at, &corner).at(&corner), corner.place / 2)),
+            );
         }
     }
 
-    /// The vertex of the cell at a place of the table on one of its crossed edges.
+    /// The cell at a corner of a quad, from the place of its last cell.
     #[inline(always)]
-    fn vertex(&self, at: usize, corner: Corner) -> u32 {
-        let CellVertices { vertex, sheets } = self.table[at - corner.back as usize];
-        vertex + sheets.at(corner.place)
+    fn cell(&self, at: usize, corner: &Corner) -> &CellVertices {
+        &self.table[at - corner.back as usize]
     }
 }
 
@@ -293,8 +304,8 @@ fn split_quads(
         let (at, turn) = ((quad / 8) as usize, &around.turns[(quad % 8) as usize]);
         let (mut vertices, mut is_marked) = ([0; 4], 0);
         for (vertex, corner) in vertices.iter_mut().zip(turn) {
-            let cell = &around.table[at - corner.back as usize];
-            *vertex = cell.vertex + cell.sheets.at(corner.place);
+            let cell = around.cell(at, corner);
+            *vertex = cell.at(corner);
             is_marked |= cell.sheets.mark();
         }
         *pair = halves(vertices, |vertex| positions[vertex as usize]);

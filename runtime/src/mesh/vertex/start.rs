@@ -33,7 +33,7 @@ impl VertexBatch {
         let VertexSource { bricks, crossings, .. } = source;
         let seedbed = Seedbed { bricks, brick, cells: crossings.of(brick), table: &self.table };
         let (seeds, shared) = (&mut self.seeds[..], &mut self.shared);
-        // In rows of a length that the compiler knows, corners need no checks: a quarter of the time.
+        // In rows of a length that the compiler knows, corners need no checks.
         match bricks.stride() {
             5 => seedbed.sow(5, seeds, shared),
             9 => seedbed.sow(9, seeds, shared),
