@@ -6,10 +6,10 @@ of the tests cut off at each twentieth. Each is a process of its own: `jbt check
 one point, which compiles.
 
 * The exit code is 0, or 1 with a place (line and column, or a byte), or 3 with the limit in words.
-* A process takes a second of a processor and 200 MB at most. One that takes longer runs twice more, and its least time
-  counts: what else runs on a machine makes a process slower, and none faster.
+* A process takes a second of a processor (or --seconds) and 200 MB at most. One that takes longer runs twice more, and its
+  least time counts: what else runs on a machine makes a process slower, and none faster.
 
-    outside/hostile.py [JBT] [--only FORMAT] [--all]
+    outside/hostile.py [JBT] [--only FORMAT] [--seconds S] [--all]
 
 --all prints every file and what became of it, instead of a line for each format. Linux alone tells what a process took.
 """
@@ -473,6 +473,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("jbt", nargs="?", type=pathlib.Path, default=ROOT / "target/release/jbt")
     parser.add_argument("--only", metavar="FORMAT", choices=FORMATS, help=", ".join(FORMATS))
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="of a processor, the most that a file may take")
     parser.add_argument("--all", action="store_true", help="print every file")
     arguments = parser.parse_args()
     jbt, wrong = arguments.jbt.resolve(), 0
@@ -490,10 +491,10 @@ def main():
                     process = [jbt, *command, *options, f"f.{form}"]
                     code, message, seconds, memory = launcher.submit(took, process, folder).result()
                     for _ in range(1, RUNS):
-                        if seconds > SECONDS:
+                        if seconds > arguments.seconds:
                             seconds = min(seconds, launcher.submit(took, process, folder).result()[2])
                     fault = faults(code, message)
-                    if seconds > SECONDS or memory > MEGABYTES:
+                    if seconds > arguments.seconds or memory > MEGABYTES:
                         fault = fault or f"{seconds:.2f} s, {memory:.0f} MB"
                     if fault:
                         wrong += 1

@@ -1,9 +1,10 @@
 //! Which instructions there are, so that none is written twice: a table of values, found by what defines
 //! them.
 //!
-//! It keeps four bytes for each place, because a function may have a million values: what defines a value
-//! stands in the function, and whoever asks says where. An instruction has its place beside those that were
-//! written when it was: what is looked at together is near in memory.
+//! It keeps four bytes for each place, because a function may have a million values: the value, and some bits
+//! of its key's hash. What defines a value stands in the function, and whoever asks says where; the bits say
+//! whether it is worth asking. An instruction has its place beside those that were written when it was: what
+//! is looked at together is near in memory.
 //!
 //! ```text
 //! places   [.. those whose last operand is near v700 ..][.. v710 ..] .. [.. v9000 ..]
@@ -13,6 +14,7 @@
 
 use crate::entity::{Entity, Value};
 use crate::function::InstKind;
+use crate::limits::MAX_VALUES;
 use crate::watch::look;
 
 /// What makes two instructions the same: what they are, and up to three numbers of theirs.
@@ -57,21 +59,11 @@ impl Key {
         product as u64 ^ (product >> 64) as u64
     }
 
-    /// The places where it is looked for, one after the other, of so many and one.
-    fn places(self, most: usize) -> impl Iterator<Item = usize> {
-        let hash = self.hash();
-        let near = self.last_operand().map(|last| 2 * last + (hash >> 32) as usize % SPREAD);
-        let near = near.into_iter().flat_map(move |first| (first..first + NEAR).map(move |at| at & most));
-        near.chain((0..).map(move |at| (hash as usize).wrapping_add(at) & most))
-    }
-
     /// The last of the values that an op is done on.
     fn last_operand(self) -> Option<usize> {
-        let is_op = self.what >= Self::OPS;
-        is_op
-            .then(|| self.of.into_iter().filter(|&of| of != Self::NONE).max())
-            .flatten()
-            .map(|of| of as usize)
+        // `NONE` wraps to 0.
+        let behind_last = self.of.map(|of| of.wrapping_add(1)).into_iter().fold(0, u32::max);
+        (self.what >= Self::OPS).then(|| behind_last as usize - 1)
     }
 }
 
@@ -80,14 +72,49 @@ const NEAR: usize = 16;
 /// Places over which instructions on the same operand are spread.
 const SPREAD: usize = 16;
 
-/// A place of the table.
+/// A place of the table, for a key with this hash.
 #[derive(Clone, Copy)]
-pub(super) struct KnownPlace(usize);
+pub(super) struct KnownPlace {
+    at: usize,
+    hash: u64,
+}
+
+/// What stands at a place: a value, and as many bits of its key's hash as the number of a value leaves.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Taken(u32);
+
+impl Taken {
+    /// A place that is free: values are kept as 1 and their index.
+    const FREE: Self = Self(0);
+    /// Bits of a value.
+    const VALUE: u32 = (MAX_VALUES as u32 + 1).ilog2() + 1;
+
+    fn new(value: Value, hash: u64) -> Self {
+        let of = value.index() as u32 + 1;
+        debug_assert!(of >> Self::VALUE == 0, "a full function keeps no more values");
+        Self(of | Self::bits(hash))
+    }
+
+    /// The hash's bits, where they stand: the lowest and those in its middle say where a key is looked for.
+    fn bits(hash: u64) -> u32 {
+        (hash >> 32) as u32 >> Self::VALUE << Self::VALUE
+    }
+
+    /// Whether the value's key may have this hash.
+    fn may_be(self, hash: u64) -> bool {
+        (self.0 ^ Self::bits(hash)) >> Self::VALUE == 0
+    }
+
+    /// The value; `None` if the place is free.
+    fn value(self) -> Option<Value> {
+        (self != Self::FREE).then(|| Value::new((self.0 & ((1 << Self::VALUE) - 1)) as usize - 1))
+    }
+}
 
 /// The table. At most half of its places are taken, so that a free one is near.
 #[derive(Default)]
 pub(super) struct KnownInsts {
-    /// Values, as 1 and their index; 0 is free. Their number is a power of two.
+    /// What is [`Taken`]. Their number is a power of two. Numbers, because the system has zeros ready.
     places: Vec<u32>,
     taken: usize,
 }
@@ -99,20 +126,36 @@ impl KnownInsts {
         if wanted <= self.places.len() {
             return;
         }
-        let before = std::mem::replace(&mut self.places, vec![0; wanted]);
-        for place in before.into_iter().filter(|&place| place != 0) {
+        let before = std::mem::replace(&mut self.places, vec![Taken::FREE.0; wanted]);
+        for value in before.into_iter().filter_map(|place| Taken(place).value()) {
             look();
-            if let Some(key) = key_of(value_at(place)) {
-                let KnownPlace(free) = self.place(key, |_| false);
-                self.places[free] = place;
+            if let Some(key) = key_of(value) {
+                let hash = key.hash();
+                let place = self.place(key, hash, |taken| taken == Taken::FREE);
+                self.places[place] = Taken::new(value, hash).0;
             }
         }
     }
 
-    /// Where a key is, or would be: whoever asks says which values have it. There is room for it.
-    fn place(&self, key: Key, has_key: impl Fn(Value) -> bool) -> KnownPlace {
-        let is_it = |&place: &usize| self.places[place] == 0 || has_key(value_at(self.places[place]));
-        KnownPlace(key.places(self.places.len() - 1).find(is_it).expect("at most half of them are taken"))
+    /// The first place, of those where a key with this hash is looked for, that is the one. There is room for
+    /// the key.
+    #[inline]
+    fn place(&self, key: Key, hash: u64, is_it: impl Fn(Taken) -> bool) -> usize {
+        let most = self.places.len() - 1;
+        if let Some(last) = key.last_operand() {
+            let first = 2 * last + (hash >> 32) as usize % SPREAD;
+            for at in first..first + NEAR {
+                if is_it(Taken(self.places[at & most])) {
+                    return at & most;
+                }
+            }
+        }
+        let mut at = hash as usize & most;
+        // At most half of them are taken.
+        while !is_it(Taken(self.places[at])) {
+            at = (at + 1) & most;
+        }
+        at
     }
 
     /// The value that a key has, and its place, which is free if there is none.
@@ -122,38 +165,41 @@ impl KnownInsts {
         key_of: impl Fn(Value) -> Option<Key>,
     ) -> (Option<Value>, KnownPlace) {
         self.reserve(1, &key_of);
-        let KnownPlace(place) = self.place(key, |value| key_of(value) == Some(key));
-        (Some(self.places[place]).filter(|&taken| taken != 0).map(value_at), KnownPlace(place))
+        let hash = key.hash();
+        let at = self.place(key, hash, |taken| {
+            taken.value().is_none_or(|value| taken.may_be(hash) && key_of(value) == Some(key))
+        });
+        (Taken(self.places[at]).value(), KnownPlace { at, hash })
     }
 
     /// Gives a place its value: a new one, or one that takes the place of another with the same key.
-    pub(super) fn set(&mut self, KnownPlace(place): KnownPlace, value: Value) {
-        self.taken += usize::from(self.places[place] == 0);
-        self.places[place] = value.index() as u32 + 1;
+    pub(super) fn set(&mut self, KnownPlace { at, hash }: KnownPlace, value: Value) {
+        self.taken += usize::from(Taken(self.places[at]) == Taken::FREE);
+        self.places[at] = Taken::new(value, hash).0;
     }
-}
-
-fn value_at(place: u32) -> Value {
-    Value::new(place as usize - 1)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     /// Steps beyond the first place until a place is found, on average, for keys that come one after another.
     fn steps(keys: impl Iterator<Item = [u32; 3]>) -> f64 {
-        let (mut known, mut steps, mut count) = (KnownInsts::default(), 0, 0);
+        let (mut known, looked, mut count) = (KnownInsts::default(), Cell::new(0), 0);
         known.reserve(100_000, |_| None);
-        let most = known.places.len() - 1;
         for of in keys {
             let key = Key { what: Key::OPS, of };
-            let place = known.place(key, |_| false);
-            steps += key.places(most).position(|at| at == place.0).expect("it is one of them");
-            known.set(place, Value::new(count));
+            let hash = key.hash();
+            let at = known.place(key, hash, |taken| {
+                looked.set(looked.get() + 1);
+                taken == Taken::FREE
+            });
+            known.set(KnownPlace { at, hash }, Value::new(count));
             count += 1;
         }
-        steps as f64 / count as f64
+        f64::from(looked.get()) / count as f64 - 1.0
     }
 
     #[test]
@@ -175,9 +221,13 @@ mod tests {
 
     #[test]
     fn neighbours_are_found_side_by_side() {
-        let (most, none) = (1 << 20, u32::MAX);
-        let first = |of| Key { what: Key::OPS, of }.places(most - 1).next().expect("there is one");
-        let places: Vec<usize> = (0..1000).map(|i| first([i, 0, none])).collect();
+        let mut known = KnownInsts::default();
+        known.reserve(1 << 19, |_| None);
+        let first = |of| {
+            let key = Key { what: Key::OPS, of };
+            known.place(key, key.hash(), |_| true)
+        };
+        let places: Vec<usize> = (0..1000).map(|i| first([i, 0, u32::MAX])).collect();
         assert!(places.windows(2).all(|two| two[0].abs_diff(two[1]) < 2 * SPREAD), "{places:?}");
     }
 }

@@ -4,6 +4,9 @@
 //! system finds its pages one after the other, and each line of memory goes from one processor to another.
 //! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it, or takes
 //! [values](VectorPart::fill) that are there.
+//!
+//! A large one asks for large pages as well. A page costs its first use some microseconds, a third of which is
+//! its zeros: a mesh of 400,000 vertices is 6,000 pages of 4 KiB, or 13 of 2 MiB.
 
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -37,6 +40,7 @@ impl<T: Copy + Default> FilledVector<T> {
         let mut values = Vec::new();
         let bytes = length.saturating_mul(size_of::<T>());
         values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
+        ask_for_large_pages(values.spare_capacity_mut());
         Ok(Self { values, length, opened: AtomicUsize::new(0) })
     }
 
@@ -69,6 +73,25 @@ impl<T: Copy + Default> FilledVector<T> {
         values
     }
 }
+
+/// Asks the system for large pages, as far as the room has whole ones: it may take no more memory than it has
+/// bytes. Nothing changes where there are none, or they are not given.
+#[cfg(all(target_os = "linux", not(miri)))]
+fn ask_for_large_pages<T>(room: &mut [MaybeUninit<T>]) {
+    /// Bytes of a page, where small ones have 4 KiB.
+    const LARGE: usize = 2 << 20;
+    let start = room.as_mut_ptr().cast::<std::ffi::c_void>();
+    let (first, end) =
+        (start.addr().next_multiple_of(LARGE), (start.addr() + size_of_val(room)) / LARGE * LARGE);
+    if first < end {
+        let advice = rustix::mm::Advice::LinuxHugepage;
+        // SAFETY: these bytes are of the room, which nobody else has, and their values stay what they are.
+        let _ = unsafe { rustix::mm::madvise(start.map_addr(|_| first), end - first, advice) };
+    }
+}
+
+#[cfg(not(all(target_os = "linux", not(miri))))]
+fn ask_for_large_pages<T>(_: &mut [MaybeUninit<T>]) {}
 
 impl<'a, T: Copy + Default> VectorPart<'a, T> {
     /// Takes the next places from the part, so that whoever fills it brick by brick needs no ranges.

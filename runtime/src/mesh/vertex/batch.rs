@@ -8,8 +8,9 @@ use super::super::pull::{LANES, VertexLanes, VertexPlanes};
 use super::super::sample::{BrickSamples, corners};
 use super::again::SecondLooks;
 use super::bracket::CrossedEdges;
-use super::seed::{SeedGroup, Seeds};
+use super::seed::SeedGroup;
 use super::side::SharpVertex;
+use super::start::Bed;
 use crate::boxes::Box3;
 
 /// Counts of the work at vertices.
@@ -73,8 +74,8 @@ pub(super) struct VertexBatch {
     /// The field at the points of the brick's closed box.
     pub(super) table: Vec<f32>,
     pub(super) points: VertexPlanes,
-    /// For each [`LANES`] of vertices: their cells, and the values derived from these.
-    pub(super) seeds: Vec<Seeds>,
+    pub(super) bed: Bed,
+    /// For each [`LANES`] of vertices: the values derived from their cells.
     pub(super) groups: Vec<SeedGroup>,
     pub(super) values: Vec<f32>,
     pub(super) gradient: VertexPlanes,
@@ -99,7 +100,6 @@ impl VertexBatch {
         let planes = [&mut self.points, &mut self.gradient];
         planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
         self.values.resize(padded, 0.0);
-        self.seeds.resize(padded / LANES, Seeds::default());
         self.groups.resize(padded / LANES, SeedGroup::default());
     }
 

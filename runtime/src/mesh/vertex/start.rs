@@ -1,13 +1,19 @@
 //! The starts of the vertices of a brick: the means of their sheets' crossings.
 
 use super::super::brick::{At, BrickSides, Bricks};
-use super::super::cell::{case, default_edges, edges, first_edges};
+use super::super::cell::{SheetEdges, case, default_edges, edges, first_edges};
 use super::super::crossing::CrossedCell;
 use super::super::field::Field;
 use super::super::pull::LANES;
 use super::super::sample::corners;
 use super::batch::{Shared, VertexBatch, VertexSource};
-use super::seed::{Seeds, grow};
+use super::seed::{SeedGroup, Seeds, grow};
+
+/// The groups that are sown before they grow: few enough that their seeds are still in the nearest cache.
+const BED: usize = 8;
+
+/// Where seeds grow, some groups at a time.
+pub(super) type Bed = [Seeds; BED];
 
 impl VertexBatch {
     /// Puts the vertices of a brick at their starts.
@@ -19,8 +25,6 @@ impl VertexBatch {
         self.table.resize(source.bricks.table_len(), 0.0);
         source.samples.gather(source.bricks, brick, &mut self.table);
         self.sow(source, brick);
-        let points = self.points.each_mut().map(Vec::as_mut_slice);
-        grow(source.options.iso, &self.seeds, &mut self.groups, points);
         for shared in &mut self.shared {
             let (group, lane) = (&mut self.groups[shared.vertex / LANES], shared.vertex % LANES);
             shared.start = self.points.each_ref().map(|plane| plane[shared.vertex]);
@@ -28,18 +32,53 @@ impl VertexBatch {
         }
     }
 
-    /// Collects the seeds of the vertices of a brick. Lanes behind the last vertex keep data of other bricks.
+    /// Sows the vertices of a brick, and grows them. Lanes behind the last vertex have data of other vertices.
     fn sow<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize) {
-        let VertexSource { bricks, crossings, .. } = source;
+        let VertexSource { bricks, crossings, options, .. } = source;
         let seedbed = Seedbed { bricks, brick, cells: crossings.of(brick), table: &self.table };
-        let (seeds, shared) = (&mut self.seeds[..], &mut self.shared);
+        let points = self.points.each_mut().map(Vec::as_mut_slice);
+        let sower = Sower { iso: options.iso, bed: &mut self.bed, next: 0, groups: &mut self.groups, points };
+        let shared = &mut self.shared;
         // In rows of a length that the compiler knows, corners need no checks.
         match bricks.stride() {
-            5 => seedbed.sow(5, seeds, shared),
-            9 => seedbed.sow(9, seeds, shared),
-            17 => seedbed.sow(17, seeds, shared),
-            stride => seedbed.sow(stride, seeds, shared),
+            5 => seedbed.sow(5, sower, shared),
+            9 => seedbed.sow(9, sower, shared),
+            17 => seedbed.sow(17, sower, shared),
+            stride => seedbed.sow(stride, sower, shared),
         }
+    }
+}
+
+/// Puts vertices into the bed, and grows them when it is full.
+struct Sower<'a> {
+    iso: f32,
+    bed: &'a mut Bed,
+    /// The number of the next vertex.
+    next: usize,
+    groups: &'a mut [SeedGroup],
+    points: [&'a mut [f32]; 3],
+}
+
+impl Sower<'_> {
+    /// Sows a vertex.
+    #[inline(always)]
+    fn sow(&mut self, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
+        let place = self.next % (BED * LANES);
+        let (seeds, lane) = (&mut self.bed[place / LANES], place % LANES);
+        seeds.put_corners(lane, corners);
+        seeds.put_home(lane, sides, edges);
+        self.next += 1;
+        if place + 1 == BED * LANES {
+            self.grow();
+        }
+    }
+
+    /// Grows what has been sown since it last did.
+    fn grow(&mut self) {
+        let first = (self.next - 1) / (BED * LANES) * BED;
+        let groups = &mut self.groups[first..self.next.div_ceil(LANES)];
+        let points = self.points.each_mut().map(|plane| &mut plane[first * LANES..]);
+        grow(self.iso, self.bed, groups, points);
     }
 }
 
@@ -57,36 +96,34 @@ type BrickAxes<'a> = [&'a [f32]; 3];
 
 impl Seedbed<'_> {
     #[inline(always)]
-    fn sow(&self, stride: usize, seeds: &mut [Seeds], shared: &mut Vec<Shared>) {
+    fn sow(&self, stride: usize, mut sower: Sower<'_>, shared: &mut Vec<Shared>) {
         let &Self { bricks, brick, cells, table } = self;
         let (origin, extent) = (bricks.origin(brick), bricks.extent(brick));
         let axes = [0, 1, 2].map(|axis| &bricks.axes[axis][origin[axis]..=origin[axis] + extent[axis]]);
         let (sides, places) = (BrickSides::new(bricks, brick), bricks.cells());
-        let mut next = 0;
         for cell in cells {
             let at = places[usize::from(cell.number)];
             // Nearly all cells.
             if sides.of(at) == 0 && cell.flips == 0 && case(cell.signs).sheets() == 1 {
-                let (seeds, lane) = (&mut seeds[next / LANES], next % LANES);
-                seeds.put_corners(lane, &corners(table, at.in_table(), stride));
-                seeds.put_home(lane, home(&axes, at), first_edges(cell.signs));
-                next += 1;
+                sower.sow(&corners(table, at.in_table(), stride), home(&axes, at), first_edges(cell.signs));
             } else {
-                next = self.sow_sheets((cell, at, sides.of(at)), &axes, next, (seeds, shared));
+                self.sow_sheets((cell, at, sides.of(at)), &axes, &mut sower, shared);
             }
+        }
+        if sower.next % (BED * LANES) != 0 {
+            sower.grow();
         }
     }
 
-    /// Sows the vertices of a cell with other than one sheet, or at a side of the lattice, from `first` on.
-    /// Returns the number of the vertex after them.
+    /// Sows the vertices of a cell with other than one sheet, or at a side of the lattice.
     #[cold]
     fn sow_sheets(
         &self,
         (cell, at, touched): (&CrossedCell, At, u8),
         axes: &BrickAxes<'_>,
-        first: usize,
-        (seeds, shared): (&mut [Seeds], &mut Vec<Shared>),
-    ) -> usize {
+        sower: &mut Sower<'_>,
+        shared: &mut Vec<Shared>,
+    ) {
         let (corners, home) = (&corners(self.table, at.in_table(), self.bricks.stride()), home(axes, at));
         let flipped;
         let sheets = match cell.flips {
@@ -96,16 +133,14 @@ impl Seedbed<'_> {
                 &flipped[..]
             }
         };
-        let mut next = first;
+        let first = sower.next;
         for &edges in sheets.iter().filter(|edges| edges.have_quad(touched)) {
-            seeds[next / LANES].put(next % LANES, corners, home, edges);
             if sheets.len() > 1 || cell.flips != 0 {
                 let (rise, start) = (edges.rise(cell.signs), [0.0; 3]);
-                shared.push(Shared { vertex: next, earlier: next - first, start, rise });
+                shared.push(Shared { vertex: sower.next, earlier: sower.next - first, start, rise });
             }
-            next += 1;
+            sower.sow(corners, home, edges);
         }
-        next
     }
 }
 
