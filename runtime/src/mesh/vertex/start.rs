@@ -110,7 +110,7 @@ impl Seedbed<'_> {
                 self.sow_sheets((cell, at, sides.of(at)), &axes, &mut sower, shared);
             }
         }
-        if sower.next % (BED * LANES) != 0 {
+        if !sower.next.is_multiple_of(BED * LANES) {
             sower.grow();
         }
     }
