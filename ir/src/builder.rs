@@ -97,8 +97,8 @@ impl FunctionBuilder {
     #[must_use]
     pub fn like(function: &Function) -> Self {
         let mut builder = Self { shares: true, ..Self::verbatim(function) };
-        // Some passes write several instructions for one. Places that are never taken cost nothing: the system
-        // gives their memory when it is first written.
+        // Some passes write several instructions for one. Places that are never taken cost nothing: the
+        // system gives their memory when it is first written.
         builder.known.reserve((4 * function.insts.len()).min(MAX_VALUES), |_| None);
         builder
     }

@@ -5,8 +5,8 @@
 //! Here each part becomes zeros when the thread that fills it [opens](VectorPart::open) it, or takes
 //! [values](VectorPart::fill) that are there.
 //!
-//! A large one asks for large pages as well. A page costs its first use some microseconds, a third of which is
-//! its zeros: a mesh of 400,000 vertices is 6,000 pages of 4 KiB, or 13 of 2 MiB.
+//! A large one asks for large pages as well. Whoever first writes to a page waits some microseconds for it,
+//! and a third of these are its zeros: a mesh of 400,000 vertices is 6,000 pages of 4 KiB, or 13 of 2 MiB.
 
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -76,7 +76,7 @@ impl<T: Copy + Default> FilledVector<T> {
 
 /// Asks the system for large pages, as far as the room has whole ones: it may take no more memory than it has
 /// bytes. Nothing changes where there are none, or they are not given.
-#[cfg(all(target_os = "linux", not(miri)))]
+#[cfg(all(target_os = "linux", feature = "parallel", not(miri)))]
 fn ask_for_large_pages<T>(room: &mut [MaybeUninit<T>]) {
     /// Bytes of a page, where small ones have 4 KiB.
     const LARGE: usize = 2 << 20;
@@ -90,7 +90,7 @@ fn ask_for_large_pages<T>(room: &mut [MaybeUninit<T>]) {
     }
 }
 
-#[cfg(not(all(target_os = "linux", not(miri))))]
+#[cfg(not(all(target_os = "linux", feature = "parallel", not(miri))))]
 fn ask_for_large_pages<T>(_: &mut [MaybeUninit<T>]) {}
 
 impl<'a, T: Copy + Default> VectorPart<'a, T> {

@@ -8,9 +8,8 @@ use super::super::pull::{LANES, VertexLanes, VertexPlanes};
 use super::super::sample::{BrickSamples, corners};
 use super::again::SecondLooks;
 use super::bracket::CrossedEdges;
-use super::seed::SeedGroup;
+use super::seed::{Bed, SeedGroup};
 use super::side::SharpVertex;
-use super::start::Bed;
 use crate::boxes::Box3;
 
 /// Counts of the work at vertices.

@@ -21,6 +21,12 @@ pub(super) struct Seeds {
     edges: [SheetEdges; LANES],
 }
 
+/// The groups that are sown before they grow: few enough that their seeds are still in the nearest cache.
+pub(super) const BED: usize = 8;
+
+/// Where seeds grow, some groups at a time.
+pub(super) type Bed = [Seeds; BED];
+
 /// Values derived from [`Seeds`].
 #[derive(Clone, Copy, Default)]
 pub(super) struct SeedGroup {

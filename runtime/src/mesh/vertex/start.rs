@@ -7,13 +7,7 @@ use super::super::field::Field;
 use super::super::pull::LANES;
 use super::super::sample::corners;
 use super::batch::{Shared, VertexBatch, VertexSource};
-use super::seed::{SeedGroup, Seeds, grow};
-
-/// The groups that are sown before they grow: few enough that their seeds are still in the nearest cache.
-const BED: usize = 8;
-
-/// Where seeds grow, some groups at a time.
-pub(super) type Bed = [Seeds; BED];
+use super::seed::{BED, Bed, SeedGroup, grow};
 
 impl VertexBatch {
     /// Puts the vertices of a brick at their starts.
@@ -32,7 +26,7 @@ impl VertexBatch {
         }
     }
 
-    /// Sows the vertices of a brick, and grows them. Lanes behind the last vertex have data of other vertices.
+    /// Sows the vertices of a brick, and grows them. Lanes behind the last vertex have data of others.
     fn sow<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize) {
         let VertexSource { bricks, crossings, options, .. } = source;
         let seedbed = Seedbed { bricks, brick, cells: crossings.of(brick), table: &self.table };
