@@ -41,17 +41,13 @@ pub(super) struct SeedGroup {
 }
 
 impl Seeds {
-    /// The field at the corners of the cell in a lane. (One half at a time stays in registers.)
+    /// Puts a vertex into a lane: the field at the corners of its cell, the sides of the cell, and the edges of
+    /// its sheet.
     #[inline(always)]
-    pub(super) fn put_corners(&mut self, lane: usize, corners: &[f32; 8]) {
+    pub(super) fn put(&mut self, lane: usize, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             lanes[lane] = *corner;
         }
-    }
-
-    /// The sides of the cell in a lane, and the edges of the vertex's sheet.
-    #[inline(always)]
-    pub(super) fn put_home(&mut self, lane: usize, sides: [[f32; 2]; 3], edges: SheetEdges) {
         for ([low, high], sides) in self.sides.iter_mut().zip(sides) {
             [low[lane], high[lane]] = sides;
         }
@@ -190,16 +186,10 @@ mod tests {
     use super::super::super::cell::default_edges;
     use super::*;
 
-    /// Puts the first sheet of a case into a lane, in a cube.
-    fn put(seeds: &mut Seeds, lane: usize, (corners, sides, signs): (&[f32; 8], [f32; 2], u8)) {
-        seeds.put_corners(lane, corners);
-        seeds.put_home(lane, [sides; 3], default_edges(signs)[0]);
-    }
-
     /// The mean of the crossings of the only sheet of a case, in the last lane of the unit cell.
     fn mean(iso: f32, corners: &[f32; 8], signs: u8) -> [f32; 3] {
         let mut seeds = Seeds::default();
-        put(&mut seeds, LANES - 1, (corners, [0.0, 1.0], signs));
+        seeds.put(LANES - 1, corners, [[0.0, 1.0]; 3], default_edges(signs)[0]);
         let (mut groups, mut planes) = ([SeedGroup::default()], [[0.0; LANES]; 3]);
         grow(iso, &[seeds], &mut groups, planes.each_mut().map(|plane| &mut plane[..]));
         planes.map(|lanes| lanes[LANES - 1])
@@ -239,10 +229,10 @@ mod tests {
         let mut seeds = Seeds::default();
         let mut corners = [0.0; 8];
         corners[0] = 1.0;
-        put(&mut seeds, 0, (&corners, [4.0, 6.0], 1));
+        seeds.put(0, &corners, [[4.0, 6.0]; 3], default_edges(1)[0]);
         // So near to the corner that there is no room.
         corners[0] = 0.5;
-        put(&mut seeds, 1, (&corners, [4.0, 6.0], 1));
+        seeds.put(1, &corners, [[4.0, 6.0]; 3], default_edges(1)[0]);
         let (mut groups, mut planes) = ([SeedGroup::default()], [[0.0; LANES]; 3]);
         grow(0.5, &[seeds], &mut groups, planes.each_mut().map(|plane| &mut plane[..]));
         let [low, high] = room([4.0, 6.0]);

@@ -58,9 +58,7 @@ impl Sower<'_> {
     #[inline(always)]
     fn sow(&mut self, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
         let place = self.next % (BED * LANES);
-        let (seeds, lane) = (&mut self.bed[place / LANES], place % LANES);
-        seeds.put_corners(lane, corners);
-        seeds.put_home(lane, sides, edges);
+        self.bed[place / LANES].put(place % LANES, corners, sides, edges);
         self.next += 1;
         if place + 1 == BED * LANES {
             self.grow();
