@@ -41,8 +41,8 @@ pub(super) struct SeedGroup {
 }
 
 impl Seeds {
-    /// Puts a vertex into a lane: the field at the corners of its cell, the sides of the cell, and the edges of
-    /// its sheet.
+    /// Puts a vertex into a lane: the field at the corners of its cell, the sides of the cell, and the edges
+    /// of its sheet.
     #[inline(always)]
     pub(super) fn put(&mut self, lane: usize, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
