@@ -36,13 +36,13 @@ BEGIN, END = "<!-- benches:begin -->", "<!-- benches:end -->"
 CARGO = ["cargo", "run", "--release", "-p", "jbt-benches", "--features", "peers", "--bin", "compare", "--", "--json"]
 
 # Other contestants than ours, the limit and fidget, in the order in which they are named.
-OTHERS = ["searched", "whole", "one_thread", "lanes", "splashsurf", "walk", "separate"]
+OTHERS = ["searched", "whole", "one_thread", "apart", "lanes", "splashsurf", "walk", "separate"]
 CONTESTANTS = ["ours", "limit", "fidget_jit", "fidget_vm", *OTHERS]
 
 # Columns of a record: these first and in this order, then any others by name, then the check.
 FIRST = ["case", "what", "of", "primitives", "points", "unit"]
 FIRST += [name + suffix for name in CONTESTANTS for suffix in ("_ns", "_form")]
-FIRST += ["ratio_limit", "ratio_fidget", "ratio_threads"]
+FIRST += ["ratio_limit", "ratio_fidget", "ratio_threads", "ratio_machine"]
 LAST = ["checksum"]
 
 
@@ -213,6 +213,8 @@ def cells(row):
         others.append(f"published {time(1e9 / float(row['published_evaluations_per_second']))}")
     if "ratio_threads" in row:
         others.append(f"one thread / ours {ratio(row['ratio_threads'])}")
+    if "ratio_machine" in row:
+        others.append(f"of the machine's {ratio(row['ratio_machine'])}")
     if row["checksum"] != "ok":
         others.append(row["checksum"])
     ratios = [ratio(row[name]) if name in row else "" for name in ("ratio_limit", "ratio_fidget")]

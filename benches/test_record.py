@@ -18,7 +18,7 @@ ROWS = [
     {"case": "train", "primitives": 95, "unit": "evaluation", "ours_ns": 604.7, "published_evaluations_per_second": 2.6e6,
      "checksum": "walk: 1 | 2"},
     {"case": "threads", "what": "meshes", "of": "few", "primitives": 5, "unit": "run", "ours_ns": 2e6, "one_thread_ns": 3e6,
-     "ratio_threads": 1.5, "checksum": "ok"},
+     "ratio_threads": 1.5, "ratio_machine": 1.8, "checksum": "ok"},
     {"case": "threads", "what": "meshes", "of": "many", "primitives": 50, "unit": "run", "ours_ns": 4e6, "checksum": "ok"},
 ]
 COMMENTS = [("command", "compare --json: all"), ("cpu", "Zen")]
@@ -78,7 +78,7 @@ class Table(unittest.TestCase):
             "walk 7.72 ns"])
         self.assertEqual(record.cells(rows[4])[-4:], ["", "", "", "published 385 ns, walk: 1 | 2"])
         self.assertEqual(record.cells(rows[5])[1], "meshes: few")
-        self.assertEqual(record.cells(rows[5])[-1], "one thread 3.00 ms, one thread / ours 1.50")
+        self.assertEqual(record.cells(rows[5])[-1], "one thread 3.00 ms, one thread / ours 1.50, of the machine's 1.80")
 
 
 class Commands(unittest.TestCase):

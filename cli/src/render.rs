@@ -145,7 +145,7 @@ impl RenderSummary<'_> {
                 "eye": eye, "right": right, "up": up, "back": back, "half": half, "orthographic": orthographic,
             })
         });
-        let [compile, frame, trace, shade] = self.times();
+        let [compile, frame, mesh, trace, shade] = self.times();
         json!({
             "width": self.made.picture.width(),
             "height": self.made.picture.height(),
@@ -162,6 +162,7 @@ impl RenderSummary<'_> {
             "engine": self.made.report.engine.name(),
             "compile_ms": compile,
             "frame_ms": frame,
+            "mesh_ms": mesh,
             "trace_ms": trace,
             "shade_ms": shade,
             "total_ms": milliseconds(self.total),
@@ -186,11 +187,12 @@ impl RenderSummary<'_> {
         if let Some([least, most]) = range {
             out += &format!("  range        {} from {least} to {most}\n", self.what());
         }
-        let [compile, frame, trace, shade] = self.times();
+        let [compile, frame, mesh, trace, shade] = self.times();
         out + &format!(
             "  rays         {}: {} of the camera, {} to the light, {} to the sky\n\
              \x20 primitives   {} evaluated, {:.1} a pixel, by engine {}\n\
-             \x20 time         {compile:.1} ms to compile, {frame:.1} to frame, {trace:.1} to trace, {shade:.1} to shade, {:.1} ms in total",
+             \x20 time         {compile:.1} ms to compile, {frame:.1} to frame, {mesh:.1} to mesh, {trace:.1} to trace, \
+             {shade:.1} to shade, {:.1} ms in total",
             plural(rays.total(), "ray", "rays"),
             grouped(rays.camera),
             grouped(rays.shadow),
@@ -212,10 +214,11 @@ impl RenderSummary<'_> {
         }
     }
 
-    /// Milliseconds to compile, frame, trace and shade.
-    fn times(&self) -> [f64; 4] {
-        let RenderReport { compile_time, frame_time, trace_time, shade_time, .. } = &self.made.report;
-        [compile_time, frame_time, trace_time, shade_time].map(|time| milliseconds(*time))
+    /// Milliseconds to compile, frame, mesh, trace and shade.
+    fn times(&self) -> [f64; 5] {
+        let RenderReport { compile_time, frame_time, mesh_time, trace_time, shade_time, .. } =
+            &self.made.report;
+        [compile_time, frame_time, mesh_time, trace_time, shade_time].map(|time| milliseconds(*time))
     }
 }
 

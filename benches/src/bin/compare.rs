@@ -93,12 +93,14 @@ forms, NAME_form, the fastest. NAME is one of:
   searched    the compiler, with the search for parts that its mesh misses
   whole       the compiler, everything made anew after an edit but the code
   one_thread  the compiler on one thread, where ours has several
+  apart       the same work on each of these threads at once, with one thread each
   lanes       the lanes interpreter, beside ours where both take part
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
   walk        a tree walker                  separate   a walk for each answer; gradients by differences
 ratio_limit is ours / limit, ratio_fidget is fidget / ours, ratio_threads is one_thread / ours, medians over rounds in which both ran;
-checksum is ok, or says who disagrees. Cases that mesh have threads and triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
+ratio_machine is one_thread / apart times the threads: how many times as fast threads that wait for nobody are, on this machine;
+checksum is ok, or says who disagrees. Cases that mesh have threads and triangles, too; pictures have frame_ms, the part that finds the camera; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
 the environment variable JBT_SAMPLES names a folder that has them as parsip/train_corrected.scene and vm/*.vm.
 
 All are built alike: opt-level 3, one codegen unit for each crate, no link-time optimisation, for any CPU of the architecture.

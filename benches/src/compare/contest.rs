@@ -20,6 +20,9 @@ pub enum Contestant {
     Whole,
     /// The compiler on one thread, beside itself on several.
     OneThread,
+    /// The same work on each of several threads at once, with one thread each: what the machine has for all of
+    /// them, where they wait for nobody.
+    Apart,
     /// The compiler's interpreter, beside its machine code.
     Lanes,
     /// fidget's machine code.
@@ -36,12 +39,13 @@ pub enum Contestant {
 
 impl Contestant {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Ours,
         Self::Limit,
         Self::Searched,
         Self::Whole,
         Self::OneThread,
+        Self::Apart,
         Self::Lanes,
         Self::FidgetJit,
         Self::FidgetVm,
@@ -59,6 +63,7 @@ impl Contestant {
             Self::Searched => "searched",
             Self::Whole => "whole",
             Self::OneThread => "one_thread",
+            Self::Apart => "apart",
             Self::Lanes => "lanes",
             Self::FidgetJit => "fidget_jit",
             Self::FidgetVm => "fidget_vm",
@@ -71,7 +76,13 @@ impl Contestant {
     /// Whether it is what we measure, and not what we measure against.
     const fn is_measured_well(self) -> bool {
         match self {
-            Self::Ours | Self::Limit | Self::Searched | Self::Whole | Self::OneThread | Self::Lanes => true,
+            Self::Ours
+            | Self::Limit
+            | Self::Searched
+            | Self::Whole
+            | Self::OneThread
+            | Self::Apart
+            | Self::Lanes => true,
             Self::FidgetJit | Self::FidgetVm | Self::Splashsurf | Self::Walk | Self::Separate => false,
         }
     }

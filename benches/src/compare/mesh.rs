@@ -46,6 +46,11 @@ impl MeshTask {
     }
 
     pub(super) fn ours(&self, thin_parts: bool) -> Polygonized {
+        self.ours_in(&self.pool, thin_parts)
+    }
+
+    /// As [`ours`](Self::ours), on other threads.
+    pub(super) fn ours_in(&self, pool: &rayon::ThreadPool, thin_parts: bool) -> Polygonized {
         let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
         let polygonize = Polygonize {
             region,
@@ -55,7 +60,7 @@ impl MeshTask {
             sharp: true,
         };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
-        self.pool.install(run).expect("blobs have a mesh")
+        pool.install(run).expect("blobs have a mesh")
     }
 
     pub(super) fn limit(&self) -> limit::mesh::Mesh {

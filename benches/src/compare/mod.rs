@@ -105,7 +105,7 @@ impl Case {
         },
         Self {
             name: "hero-picture",
-            what: "an octopus in light, 800 x 600 pixels, draft and good, on one thread and on two",
+            what: "an octopus in light, 800 x 600 pixels, draft and good, and 200 x 200",
             run: picture::hero,
         },
         Self {

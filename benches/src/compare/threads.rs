@@ -1,4 +1,6 @@
-//! The same mesh on several threads and on one: what the threads are worth. Two at the least.
+//! The same mesh on several threads and on one: what the threads are worth. Two at the least. And as many
+//! meshes at once, on one thread each: threads that share caches, memory and a clock may have less than twice
+//! the work of one, whatever they do.
 
 use std::hint::black_box;
 use std::io::sink;
@@ -20,6 +22,24 @@ const HERO: [usize; 2] = [400, 1_306];
 /// The same with `--quick`.
 const HERO_IN_SHORT: [usize; 2] = [100, 200];
 
+/// Pools of one thread each, as many as there are threads.
+struct ThreadsApart(Vec<rayon::ThreadPool>);
+
+impl ThreadsApart {
+    fn new(options: Options) -> Self {
+        Self((0..options.threads).map(|_| pool(Options { threads: 1, ..options })).collect())
+    }
+
+    /// The same work by each of them at once.
+    fn run<T>(&self, work: impl Fn(&rayon::ThreadPool) -> T + Sync) {
+        std::thread::scope(|scope| {
+            for pool in &self.0 {
+                scope.spawn(|| drop(black_box(work(pool))));
+            }
+        });
+    }
+}
+
 /// A mesh of everybody.
 pub(super) fn threads(options: Options) -> Vec<ResultRow> {
     let options = Options { threads: options.threads.max(2), ..options };
@@ -38,6 +58,7 @@ pub(super) fn threads(options: Options) -> Vec<ResultRow> {
 
 /// Blobs, with the limit beside on as many threads as ours.
 fn of_blobs(of: &'static str, [many, one]: [MeshTask; 2], options: Options) -> ResultRow {
+    let apart = ThreadsApart::new(options);
     let mut contest = Contest::new();
     let mut triangles = 0;
     let see = |made: &jbt::Polygonized| {
@@ -46,6 +67,7 @@ fn of_blobs(of: &'static str, [many, one]: [MeshTask; 2], options: Options) -> R
     };
     contest.enter_checked(Contestant::Ours, "", || many.ours(false), see);
     contest.enter_checked(Contestant::OneThread, "", || one.ours(false), |_| Ok(()));
+    contest.enter(Contestant::Apart, "", Ok(()), || apart.run(|pool| one.ours_in(pool, false)));
     contest.enter_checked(Contestant::Limit, "", || many.limit(), |limit| many.check(&limit.positions));
     if of == "particles" {
         many.enter_splashsurf(&mut contest, options);
@@ -57,6 +79,7 @@ fn of_blobs(of: &'static str, [many, one]: [MeshTask; 2], options: Options) -> R
 fn of_spheres(options: Options) -> ResultRow {
     let tree = unions::primitives();
     let [many, one] = [options, Options { threads: 1, ..options }].map(pool);
+    let apart = ThreadsApart::new(options);
     let mut triangles = 0;
     let mut contest = Contest::new();
     let see = |made: &jbt::Polygonized| {
@@ -65,6 +88,7 @@ fn of_spheres(options: Options) -> ResultRow {
     };
     contest.enter_checked(Contestant::Ours, "", || unions::ours(&tree, &many), see);
     contest.enter(Contestant::OneThread, "", Ok(()), || unions::ours(&tree, &one));
+    contest.enter(Contestant::Apart, "", Ok(()), || apart.run(|pool| unions::ours(&tree, pool)));
     row("spheres", unions::SPHERES, unions::POINTS, contest, triangles, options)
 }
 
@@ -86,6 +110,7 @@ fn of_hero(
         made.mesh.triangles.len()
     };
     let [many, one] = [options, Options { threads: 1, ..options }].map(pool);
+    let apart = ThreadsApart::new(options);
     let (mut contest, mut triangles) = (Contest::new(), 0);
     let see = |&made: &usize| {
         triangles = made;
@@ -93,6 +118,7 @@ fn of_hero(
     };
     contest.enter_checked(Contestant::Ours, "", || many.install(mesh), see);
     contest.enter(Contestant::OneThread, "", Ok(()), || black_box(one.install(mesh)));
+    contest.enter(Contestant::Apart, "", Ok(()), || apart.run(|pool| pool.install(mesh)));
     let evaluations = Compiler::new().compile(tree).evaluator(jbt::Query::FIELD);
     let primitives = evaluations.expect("the scene compiles").evaluations_per_point() as usize;
     row(of, primitives, 0, contest, triangles, options)

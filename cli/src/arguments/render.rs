@@ -86,7 +86,7 @@ Keys of --json:
   evaluations_per_pixel, triangles (of the mesh that guided rays, 0 without),
   range: [least, most] (what the ends of the colours stand for; null where colours are colours),
   camera: {eye, right, up, back, half, orthographic} (null if the model is empty), tolerance, engine,
-  compile_ms, frame_ms, trace_ms, shade_ms, total_ms, warnings
+  compile_ms, frame_ms, mesh_ms, trace_ms, shade_ms, total_ms, warnings
 
 Examples:
   jbt render hero.jbt -o hero.png

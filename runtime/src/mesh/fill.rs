@@ -15,8 +15,17 @@ use super::brick::split;
 
 /// The memory for so many bytes is not to be had.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct NoMemory {
-    pub(super) bytes: usize,
+pub(crate) struct NoMemory {
+    pub(crate) bytes: usize,
+}
+
+/// An empty vector with room for this many values, in large pages where it has whole ones.
+pub(crate) fn room<T>(length: usize) -> Result<Vec<T>, NoMemory> {
+    let mut values = Vec::new();
+    let bytes = length.saturating_mul(size_of::<T>());
+    values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
+    ask_for_large_pages(values.spare_capacity_mut());
+    Ok(values)
 }
 
 /// A vector of known length, to be filled in parts.
@@ -37,11 +46,7 @@ pub(super) struct VectorPart<'a, T> {
 impl<T: Copy + Default> FilledVector<T> {
     /// Room for this many values.
     pub(super) fn new(length: usize) -> Result<Self, NoMemory> {
-        let mut values = Vec::new();
-        let bytes = length.saturating_mul(size_of::<T>());
-        values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
-        ask_for_large_pages(values.spare_capacity_mut());
-        Ok(Self { values, length, opened: AtomicUsize::new(0) })
+        Ok(Self { values: room(length)?, length, opened: AtomicUsize::new(0) })
     }
 
     /// Room for the few values of an edit: without memory it does what vectors do.

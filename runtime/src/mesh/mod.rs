@@ -87,6 +87,7 @@ pub use simplify::Simplify;
 #[cfg(feature = "export")]
 pub(crate) use area::{area_vector, unit};
 pub(crate) use block::{busy, extract as extract_block};
+pub(crate) use fill::room;
 
 use crate::job::{Hook, Job};
 use crate::progress::{EACH, Progress};

@@ -25,7 +25,7 @@ const CUT_POINTS: u32 = 32;
 const SCOUTS: u32 = 96;
 /// Triangles of the mesh of a draft for each pixel of the picture, beyond which its cells are larger, and how
 /// much larger at most.
-const DRAFT_TRIANGLES: f64 = 0.25;
+const DRAFT_TRIANGLES: f64 = 0.15;
 const DRAFT_COARSER: f64 = 2.0;
 /// The nearest distance at which a pixel's size is measured, as a part of the model's radius.
 const NEAREST: f64 = 0.02;

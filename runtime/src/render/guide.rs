@@ -10,6 +10,8 @@
 //! The lattices follow from the settings of the picture and from the model. So a mesh, and whatever is traced
 //! against it, is the same for any number of threads and every engine.
 
+use std::time::{Duration, Instant};
+
 use super::error::RenderError;
 use super::hierarchy::Hierarchy;
 use super::renderer::Renderer;
@@ -50,6 +52,8 @@ pub struct Guide {
     pub lowest: f64,
     /// The number of distances to skeletons that were evaluated for it.
     pub evaluations: u64,
+    /// The time that it took.
+    pub time: Duration,
 }
 
 impl CoarseMesh {
@@ -79,6 +83,7 @@ impl Guide {
         (up, is_lit): ([f64; 3], bool),
         hook: Hook<'_>,
     ) -> Result<Option<Self>, RenderError> {
+        let started = Instant::now();
         let wanted = cell;
         let least = coarse.cell_for(MAX_GUIDE_TRIANGLES as f64);
         let cell = cell.max(least).max(f64::from(bounds.longest_side()) / MAX_GUIDE_CELLS as f64);
@@ -97,6 +102,7 @@ impl Guide {
             is_cut: report.cut_sides.any(),
             lowest,
             evaluations,
+            time: started.elapsed(),
         }))
     }
 }

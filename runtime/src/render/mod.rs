@@ -33,6 +33,7 @@ mod lights;
 mod look;
 mod material;
 mod noise;
+mod pixels;
 mod raster;
 mod renderer;
 mod report;
@@ -64,6 +65,7 @@ use crate::job::{Hook, Job};
 use area::TileArea;
 use develop::{Gathered, develop};
 use frame::Frame;
+use pixels::of_pixels;
 use telling::Telling;
 use tile::Tile;
 
@@ -122,9 +124,10 @@ impl Render {
         let mut film = self.film()?;
         telling.begin(sheet::BEGIN);
         let frame = Frame::new(self, renderer, &mut telling)?;
-        let frame_time = start.elapsed();
-        let start = Instant::now();
         let guide = frame.as_ref().and_then(|frame| frame.guide.as_ref());
+        let mesh_time = guide.map_or(Duration::ZERO, |guide| guide.time);
+        let frame_time = start.elapsed() - mesh_time;
+        let start = Instant::now();
         let done = match &frame {
             Some(frame) => match guide {
                 Some(guide) => sheet::expose(frame, guide, &mut film, &mut telling)?,
@@ -152,6 +155,7 @@ impl Render {
             notice,
             compile_time: Duration::ZERO,
             frame_time,
+            mesh_time,
             trace_time,
             shade_time,
         };
@@ -161,10 +165,7 @@ impl Render {
     /// An empty film.
     fn film(&self) -> Result<Vec<Gathered>, RenderError> {
         let pixels = self.size[0] as usize * self.size[1] as usize;
-        let mut film = Vec::new();
-        film.try_reserve_exact(pixels).map_err(|_| RenderError::Memory { pixels })?;
-        film.resize(pixels, [0.0; 4]);
-        Ok(film)
+        of_pixels(pixels, [0.0; 4])
     }
 }
 

@@ -100,15 +100,16 @@ impl<'a> MeshRaster<'a> {
         raster
     }
 
-    /// Fills the bins of the tiles of some rows; a bin has its triangles in order.
+    /// Fills the bins of the tiles of some rows; a bin has those of its triangles that are seen from outside,
+    /// in order.
     fn sort(&mut self, [first, end]: [u32; 2]) {
         let side = f64::from(TileArea::side(1));
         let tiles = [f64::from(self.size[0]), f64::from(end - first)].map(|length| (length / side).ceil());
         let columns = tiles[0] as usize;
         let places = |number: usize| {
             let [low, high] = self.extent(number, self.size.map(f64::from));
-            let tile =
-                |pixel: f64, axis: usize| (pixel / side).floor().clamp(0.0, tiles[axis] - 1.0) as usize;
+            // A cast is the floor of what is positive.
+            let tile = |pixel: f64, axis: usize| (pixel / side).clamp(0.0, tiles[axis] - 1.0) as usize;
             let (top, bottom) = (low[1] - f64::from(first), high[1] - f64::from(first));
             let is_out = high[0] < 0.0
                 || low[0] > f64::from(self.size[0])
@@ -122,7 +123,8 @@ impl<'a> MeshRaster<'a> {
         };
         let of_run = |run: usize| -> Vec<[u32; 2]> {
             let numbers = run * SOME..((run + 1) * SOME).min(self.triangles.len());
-            numbers.flat_map(|number| places(number).map(move |tile| [tile, number as u32])).collect()
+            let seen = numbers.filter(|&number| self.is_seen(number));
+            seen.flat_map(|number| places(number).map(move |tile| [tile, number as u32])).collect()
         };
         let runs: Vec<Vec<[u32; 2]>> =
             scatter(|_| (0..self.triangles.len().div_ceil(SOME)).into_par_iter().map(of_run).collect());
@@ -147,6 +149,17 @@ impl<'a> MeshRaster<'a> {
         self.triangles[number].map(|vertex| self.vertices[vertex as usize])
     }
 
+    /// The corners for which a sample looks along (x, y, 1): see the beginning of this file.
+    fn directions(&self, corners: [Vector; 3]) -> [Vector; 3] {
+        if self.camera.orthographic { corners.map(|[x, y, _]| [x, y, 1.0 / self.unit]) } else { corners }
+    }
+
+    /// Whether the eye sees the outer side of a triangle.
+    fn is_seen(&self, number: usize) -> bool {
+        let [a, b, c] = self.directions(self.corners(number));
+        dot(a, cross(b, c)) > 0.0
+    }
+
     /// The box around a triangle in a picture of some width and height; without bounds where the triangle
     /// reaches behind the eye.
     fn extent(&self, number: usize, size: [f64; 2]) -> [[f64; 2]; 2] {
@@ -160,14 +173,13 @@ impl<'a> MeshRaster<'a> {
     }
 
     /// The normals of the planes through the eye and the edges, each with a largest coordinate of 1, and the
-    /// coefficients of the nearness; `None` for a triangle that is seen from its edge or from inside.
+    /// coefficients of the nearness; `None` for a triangle that is so thin that they are not finite.
     fn planes(&self, number: usize) -> Option<[Vector; 4]> {
         let corners = self.corners(number);
-        let is_flat = self.camera.orthographic;
-        let [a, b, c] = corners.map(|[x, y, z]| if is_flat { [x, y, 1.0 / self.unit] } else { [x, y, z] });
+        let [a, b, c] = self.directions(corners);
         let edges = [cross(b, c), cross(c, a), cross(a, b)];
         let volume = dot(a, edges[0]);
-        let nearness = corners.map(|corner| if is_flat { -corner[2] } else { 1.0 });
+        let nearness = corners.map(|corner| if self.camera.orthographic { -corner[2] } else { 1.0 });
         let near =
             [0, 1, 2].map(|axis| (0..3).map(|edge| edges[edge][axis] * nearness[edge]).sum::<f64>() / volume);
         let [first, second, third] = edges.map(|edge| {
@@ -175,7 +187,7 @@ impl<'a> MeshRaster<'a> {
             scale(edge, 1.0 / largest)
         });
         let planes = [first, second, third, near];
-        (volume > 0.0 && planes.iter().flatten().all(|x| x.is_finite())).then_some(planes)
+        planes.iter().flatten().all(|x| x.is_finite()).then_some(planes)
     }
 
     /// The direction, of depth 1, of the middle of a sample; without perspective, its place.
@@ -209,8 +221,10 @@ impl<'a> MeshRaster<'a> {
             let [low, high] = [low[axis], high[axis]].map(|place| place - f64::from(first * parts));
             let most = f64::from(count * parts);
             // The middles of samples in it, and those beside it by less than edges are rounded.
-            let [low, high] = [low - 0.5 - ROUNDED, high + 0.5 + ROUNDED];
-            [low.ceil().clamp(0.0, most) as usize, high.floor().clamp(0.0, most) as usize]
+            let [low, high] = [low - 0.5 - ROUNDED, high + 0.5 + ROUNDED].map(|place| place.clamp(0.0, most));
+            // A cast is the floor of what is positive.
+            let floor = low as usize;
+            [floor + usize::from(floor as f64 != low), high as usize]
         };
         let (columns, rows) = (range(0, area.x, area.width), range(1, area.y, area.height));
         if columns[0] >= columns[1] || rows[0] >= rows[1] {

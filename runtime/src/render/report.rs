@@ -44,8 +44,10 @@ pub struct RenderReport {
     pub notice: Option<Notice>,
     /// Time to lower and compile the model.
     pub compile_time: Duration,
-    /// Time to find the bounds of the model, to frame it, and to mesh it for its light.
+    /// Time to find the bounds of the model, and to frame it.
     pub frame_time: Duration,
+    /// Time to mesh the model for its light, and to lead the eye; 0 if every ray was exact.
+    pub mesh_time: Duration,
     /// Time to trace the rays from the camera.
     pub trace_time: Duration,
     /// Time to shade the hits: further rays and light.

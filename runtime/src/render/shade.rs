@@ -61,7 +61,7 @@ pub fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) 
     let half = unit(add(frame.lights.key, view)).map_or(0.0, |half| dot(half, met.normal).max(0.0));
     let SurfaceMaterial { rough, metal, glow } = met.material;
     let (exponent, brightness) = shine(rough);
-    let shine = light.key * brightness * half.powf(exponent) as f32 * (1.0 + METAL_SHINE * metal);
+    let shine = light.key * brightness * (half as f32).powf(exponent) * (1.0 + METAL_SHINE * metal);
     let mirrored = along(scale(met.normal, 2.0 * facing), -1.0, view);
     let grazing = (1.0 - facing).powi(5) as f32;
     let sharp = sky(dot(mirrored, frame.up).clamp(-1.0, 1.0));
@@ -83,9 +83,9 @@ pub fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) 
 
 /// The exponent and the brightness of the highlight on a surface of this roughness, after Blinn and Phong:
 /// the narrower, the brighter.
-fn shine(rough: f32) -> (f64, f32) {
+fn shine(rough: f32) -> (f32, f32) {
     let exponent = 2.0 / rough.max(SMOOTHEST).powi(4) - 2.0;
-    (f64::from(exponent), (SHINE * (exponent + 2.0)).min(BRIGHTEST_SHINE))
+    (exponent, (SHINE * (exponent + 2.0)).min(BRIGHTEST_SHINE))
 }
 
 /// The light of the studio's lamps that a metal mirrors in a direction: large soft boxes at the key light and

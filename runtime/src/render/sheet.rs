@@ -20,6 +20,7 @@ use super::frame::Frame;
 use super::gather::{Light, RayBudget, Spot, gather, unshadowed};
 use super::guide::Guide;
 use super::look::look;
+use super::pixels::of_pixels;
 use super::raster::{MeshMeeting, MeshRaster};
 use super::seen::{SeenKind, SeenPoint};
 use super::settings::{Quality, RenderMode};
@@ -75,7 +76,7 @@ pub fn expose(
         let (first, count) = (band as u32 * each, kept.len() as u32 / width);
         let beside = if bands > 1 { SMOOTH_ROWS + 1 } else { 0 };
         let rows = [first.saturating_sub(beside), (first + count + beside).min(height)];
-        let mut sheet = PictureSheet::new(frame, guide, rows);
+        let mut sheet = PictureSheet::new(frame, guide, rows)?;
         let part = |of: f32| begin + (1.0 - begin) * (band as f32 + of) / bands as f32;
         let started = Instant::now();
         sheet.look(telling, part(0.3))?;
@@ -96,33 +97,6 @@ pub fn expose(
 
 /// The part of the work that is done when rays begin.
 pub const BEGIN: f32 = 0.2;
-
-/// The value of each tile, in order.
-fn of_tiles<T: Send>(
-    tiles: &[TileArea],
-    (telling, end): (&mut Telling<'_>, f32),
-    work: impl Fn(usize, &TileArea) -> Result<T, RenderError> + Sync + Send,
-) -> Result<Vec<T>, RenderError> {
-    telling.begin(end);
-    let mut all = Vec::with_capacity(tiles.len());
-    for (index, some) in tiles.chunks(STRIDE).enumerate() {
-        let first = index * STRIDE;
-        let breath = telling.breath();
-        let work = |tile: usize| {
-            breath.take()?;
-            work(tile, &tiles[tile])
-        };
-        let made: Vec<T> = scatter(|watches| {
-            let tiles_now = (first..first + some.len()).into_par_iter();
-            tiles_now.map(|tile| watches.hold(|| work(tile))).collect::<Result<_, _>>()
-        })?;
-        all.extend(made);
-        if !telling.tell(all.len() as f32 / tiles.len() as f32) {
-            return Err(RenderError::Cancelled);
-        }
-    }
-    Ok(all)
-}
 
 /// The pixels of a tile, block by block: neighbours in the list are neighbours in the picture.
 fn pixels(area: &TileArea) -> Vec<[u32; 2]> {
@@ -188,22 +162,55 @@ struct TileSight {
 }
 
 impl<'a> PictureSheet<'a> {
-    fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Self {
+    fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Result<Self, RenderError> {
         let width = frame.render.size[0];
         let tiles = TileArea::of_rows(width, rows, 1);
         let raster =
             guide.leads.then(|| MeshRaster::new(&frame.camera, frame.render.size, &guide.mesh, rows));
-        Self {
+        Ok(Self {
             frame,
             guide,
             raster,
             rows,
             is_exact: Vec::new(),
             tiles,
-            seen: vec![SeenPoint::NOTHING; ((rows[1] - rows[0]) * width) as usize],
+            seen: of_pixels(((rows[1] - rows[0]) * width) as usize, SeenPoint::NOTHING)?,
             lights: Vec::new(),
             cost: Tile::default(),
+        })
+    }
+
+    /// Makes a value of each tile, some of them at a time, and has them taken in order: few of them are there
+    /// at once.
+    fn of_tiles<T: Send>(
+        &mut self,
+        (telling, end): (&mut Telling<'_>, f32),
+        make: impl Fn(&Self, usize, &TileArea) -> Result<T, RenderError> + Sync + Send,
+        mut take: impl FnMut(&mut Self, &TileArea, T),
+    ) -> Result<(), RenderError> {
+        telling.begin(end);
+        let count = self.tiles.len();
+        for first in (0..count).step_by(STRIDE) {
+            let some = first..(first + STRIDE).min(count);
+            let breath = telling.breath();
+            let sheet = &*self;
+            let make = |tile: usize| {
+                breath.take()?;
+                make(sheet, tile, &sheet.tiles[tile])
+            };
+            let made: Vec<T> = scatter(|watches| {
+                let tiles = some.clone().into_par_iter();
+                tiles.map(|tile| watches.hold(|| make(tile))).collect::<Result<_, _>>()
+            })?;
+            for (tile, value) in some.clone().zip(made) {
+                let area = self.tiles[tile];
+                take(self, &area, value);
+            }
+            if !telling.tell(some.end as f32 / count as f32) {
+                return Err(RenderError::Cancelled);
+            }
         }
+        Ok(())
     }
 
     fn width(&self) -> usize {
@@ -226,18 +233,16 @@ impl<'a> PictureSheet<'a> {
 
     /// Finds what each pixel sees.
     fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
-        let found = of_tiles(&self.tiles, (telling, end), |tile, area| self.look_tile(tile, area))?;
-        for (area, sight) in self.tiles.clone().iter().zip(found) {
+        self.of_tiles((telling, end), Self::look_tile, |sheet, area, sight| {
             for (pixel, seen) in pixels(area).into_iter().zip(sight.seen) {
-                let index = self.index(pixel);
-                self.seen[index] = seen;
-                self.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+                let index = sheet.index(pixel);
+                sheet.seen[index] = seen;
+                sheet.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
             }
-            self.is_exact.push(sight.is_exact);
-            self.cost.rays.camera += sight.rays;
-            self.cost.evaluations += sight.evaluations;
-        }
-        Ok(())
+            sheet.is_exact.push(sight.is_exact);
+            sheet.cost.rays.camera += sight.rays;
+            sheet.cost.evaluations += sight.evaluations;
+        })
     }
 
     /// Looks exactly where what is seen breaks off: the mesh cuts the corners of sharp edges off, so a
@@ -251,29 +256,28 @@ impl<'a> PictureSheet<'a> {
         };
         let all = 0..self.seen.len();
         let is_break: Vec<bool> = scatter(|_| all.into_par_iter().with_min_len(4096).map(breaks).collect());
-        let found = of_tiles(&self.tiles, (telling, end), |tile, area| {
+        let look = |sheet: &Self, tile: usize, area: &TileArea| {
             let is_near = |&[x, y]: &[u32; 2]| {
                 let columns = x.saturating_sub(BESIDE)..(x + BESIDE + 1).min(width as u32);
-                let rows = y.saturating_sub(BESIDE).max(self.rows[0])..(y + BESIDE + 1).min(self.rows[1]);
-                rows.into_iter().any(|y| columns.clone().any(|x| is_break[self.index([x, y])]))
+                let rows = y.saturating_sub(BESIDE).max(sheet.rows[0])..(y + BESIDE + 1).min(sheet.rows[1]);
+                rows.into_iter().any(|y| columns.clone().any(|x| is_break[sheet.index([x, y])]))
             };
             let near: Vec<[u32; 2]> =
-                pixels(area).into_iter().filter(|pixel| !self.is_exact[tile] && is_near(pixel)).collect();
-            let places: Vec<[f64; 2]> = near.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
-            let sight = exactly(self.frame, &places)?;
+                pixels(area).into_iter().filter(|pixel| !sheet.is_exact[tile] && is_near(pixel)).collect();
+            let places: Vec<[f64; 2]> = near.iter().map(|&pixel| sheet.place(pixel, [0, 0], 1)).collect();
+            let sight = exactly(sheet.frame, &places)?;
             Ok((near, sight))
-        })?;
-        for (near, (seen, rays, evaluations)) in found {
-            self.cost.rays.camera += rays;
-            self.cost.evaluations += evaluations;
+        };
+        self.of_tiles((telling, end), look, |sheet, _, (near, (seen, rays, evaluations))| {
+            sheet.cost.rays.camera += rays;
+            sheet.cost.evaluations += evaluations;
             for (pixel, seen) in near.into_iter().zip(seen) {
-                let index = self.index(pixel);
-                let was = std::mem::replace(&mut self.seen[index], seen);
-                self.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
-                self.cost.pixels_hit -= u64::from(was.kind == SeenKind::Surface);
+                let index = sheet.index(pixel);
+                let was = std::mem::replace(&mut sheet.seen[index], seen);
+                sheet.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+                sheet.cost.pixels_hit -= u64::from(was.kind == SeenKind::Surface);
             }
-        }
-        Ok(())
+        })
     }
 
     /// What a tile sees, in the order of [`pixels`].
@@ -339,26 +343,26 @@ impl<'a> PictureSheet<'a> {
         let budget =
             RayBudget { spot: self.frame.render.quality.rays(), pixel: self.frame.render.quality.rays() };
         let dark = Light { key: 0.0, facing: 0.0, sky: [0.0; 3], open: 0.0 };
-        self.lights = vec![dark; self.seen.len()];
-        let found = of_tiles(&self.tiles, (telling, end), |_, area| {
+        self.lights = of_pixels(self.seen.len(), dark)?;
+        let light = |sheet: &Self, _: usize, area: &TileArea| {
             let lit: Vec<[u32; 2]> = pixels(area)
                 .into_iter()
-                .filter(|&pixel| self.seen[self.index(pixel)].kind != SeenKind::Nothing)
+                .filter(|&pixel| sheet.seen[sheet.index(pixel)].kind != SeenKind::Nothing)
                 .collect();
             let spots: Vec<Spot> =
-                lit.iter().map(|&pixel| self.seen[self.index(pixel)].spot(self.frame, pixel)).collect();
-            let (lights, cost) = gather(self.frame, &spots, budget)?;
+                lit.iter().map(|&pixel| sheet.seen[sheet.index(pixel)].spot(sheet.frame, pixel)).collect();
+            let (lights, cost) = gather(sheet.frame, &spots, budget)?;
             Ok((lit, lights, cost))
-        })?;
-        for (lit, lights, cost) in found {
+        };
+        self.of_tiles((telling, end), light, |sheet, _, (lit, lights, cost)| {
             for (pixel, light) in lit.into_iter().zip(lights) {
-                let index = self.index(pixel);
-                self.lights[index] = light;
+                let index = sheet.index(pixel);
+                sheet.lights[index] = light;
             }
-            self.cost.rays.shadow += cost.rays.shadow;
-            self.cost.rays.sky += cost.rays.sky;
-            self.cost.evaluations += cost.evaluations;
-        }
+            sheet.cost.rays.shadow += cost.rays.shadow;
+            sheet.cost.rays.sky += cost.rays.sky;
+            sheet.cost.evaluations += cost.evaluations;
+        })?;
         self.lights = smooth(&self.seen, std::mem::take(&mut self.lights), self.width());
         for (seen, light) in self.seen.iter().zip(&mut self.lights) {
             light.facing = light.key * seen.facing(self.frame);
@@ -374,20 +378,19 @@ impl<'a> PictureSheet<'a> {
         end: f32,
     ) -> Result<(), RenderError> {
         let rows = [first, first + (kept.len() / self.width()) as u32];
-        let made = of_tiles(&self.tiles, (telling, end), |tile, area| {
+        let develop = |sheet: &Self, tile: usize, area: &TileArea| {
             let inner: Vec<[u32; 2]> =
                 pixels(area).into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
-            let (values, rays, evaluations) = self.develop_tile((tile, area), &inner)?;
+            let (values, rays, evaluations) = sheet.develop_tile((tile, area), &inner)?;
             Ok((inner, values, rays, evaluations))
-        })?;
-        for (pixels, values, rays, evaluations) in made {
+        };
+        self.of_tiles((telling, end), develop, |sheet, _, (pixels, values, rays, evaluations)| {
             for ([x, y], value) in pixels.into_iter().zip(values) {
-                kept[(y - first) as usize * self.width() + x as usize] = value;
+                kept[(y - first) as usize * sheet.width() + x as usize] = value;
             }
-            self.cost.rays.camera += rays;
-            self.cost.evaluations += evaluations;
-        }
-        Ok(())
+            sheet.cost.rays.camera += rays;
+            sheet.cost.evaluations += evaluations;
+        })
     }
 
     /// Whether a pixel differs from one of the four beside it.

@@ -1,5 +1,7 @@
 //! Vectors of three f64, as plain arrays.
 
+use std::ops::Range;
+
 /// A point or a direction.
 pub type Vector = [f64; 3];
 
@@ -28,8 +30,15 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// Squares of lengths between these have all of their digits.
+const SAFE_SQUARES: Range<f64> = 1e-200..1e200;
+
 /// The length, also for vectors whose squares overflow f64.
 pub fn length(a: Vector) -> f64 {
+    let square = dot(a, a);
+    if SAFE_SQUARES.contains(&square) {
+        return square.sqrt();
+    }
     let largest = a.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     if largest == 0.0 || !largest.is_finite() {
         return largest;
