@@ -18,12 +18,14 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use jbt::contour::{Detail, Plane, Slicer};
+use jbt::differing::differing_places;
 use jbt::export::{Format, write};
 use jbt::sample::Sampler;
-use jbt::solid::Measure;
-use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Polygonize, Query, Render, Renderer, Solid, Task};
+use jbt::solid::{Measure, PartSolids};
+use jbt::statistics::Statistics;
+use jbt::{Box3, Compiler, Engine, Fineness, Model, Polygonize, Query, Render, Renderer, Solid, Task};
 use jbt_testkit::gaps::WorkGaps;
-use jbt_testkit::scene::tree;
+use jbt_testkit::scene::model;
 
 /// What is promised.
 const MOST: Duration = Duration::from_millis(50);
@@ -36,7 +38,8 @@ part "cross" { union { box { center (-2 0 0) half (0.5 0.9 0.9) radius 0.2 } box
 "#;
 
 /// The gaps of all tasks.
-fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
+fn gaps(model: &Model, engine: Engine) -> Vec<(&'static str, Duration)> {
+    let tree = &model.check().expect("the model is right");
     let compiler = Compiler::for_engine(engine);
     let compiled = compiler.compile(tree);
     let mut told = Vec::new();
@@ -83,12 +86,29 @@ fn gaps(tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
             WorkGaps::longest(|gaps| drop(solid.measure(&settings).on_progress(|_| gaps.look()).run())),
         ));
     }
+    if let Ok(lattice) = mesh.lattice(tree) {
+        let count = |gaps: WorkGaps| {
+            let statistics = Statistics::new(tree);
+            drop(statistics.supports(&compiler, &lattice).on_progress(|_| gaps.look()).run());
+        };
+        told.push(("count", WorkGaps::longest(count)));
+    }
+    let mut moved = model.clone();
+    moved.root = moved.root.translate([0.1, 0.0, 0.0]);
+    if let Ok(moved) = moved.check() {
+        let (models, region) = ([tree, &moved], region.map(|region| region.map(|at| at.map(f64::from))));
+        told.push(("diff", WorkGaps::longest(|_| drop(differing_places(&compiler, models, region)))));
+    }
+    if let Ok(parts) = PartSolids::new(&compiler, tree) {
+        told.push(("overlaps", WorkGaps::longest(|_| drop(parts.relations(1e-3)))));
+    }
     told
 }
 
 /// The gaps of a mesh of this resolution, and of writing it in each format.
-fn large_gaps(tree: &CheckedTree, engine: Engine, resolution: usize) -> Vec<(String, Duration)> {
-    let compiled = Compiler::for_engine(engine).compile(tree);
+fn large_gaps(model: &Model, engine: Engine, resolution: usize) -> Vec<(String, Duration)> {
+    let tree = model.check().expect("the model is right");
+    let compiled = Compiler::for_engine(engine).compile(&tree);
     let mesh = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
     let mut made = None;
     let gap = WorkGaps::longest(|gaps| made = mesh.with(&compiled).on_progress(|_| gaps.look()).run().ok());
@@ -147,12 +167,12 @@ fn main() {
     println!("{:14} {:7} longest gaps in ms", "scene", "engine");
     let mut most = Duration::ZERO;
     for (name, text) in scenes().into_iter().filter(|(name, _)| name.contains(&part)) {
-        let tree = tree(&text);
+        let model = model(&text);
         for one in Engine::ALL.into_iter().filter(|one| engine.as_ref().is_none_or(|name| name == one.name()))
         {
             let told: Vec<(String, Duration)> = pool.install(|| match resolution {
-                Some(resolution) => large_gaps(&tree, one, resolution),
-                None => gaps(&tree, one).into_iter().map(|(task, gap)| (task.to_owned(), gap)).collect(),
+                Some(resolution) => large_gaps(&model, one, resolution),
+                None => gaps(&model, one).into_iter().map(|(task, gap)| (task.to_owned(), gap)).collect(),
             });
             let words = told.iter().map(|(task, gap)| {
                 let mark = if *gap > MOST { "!" } else { "" };

@@ -60,8 +60,7 @@ impl ResultRow {
     /// machine lets ours be.
     #[must_use]
     pub fn ratio_machine(&self) -> Option<f64> {
-        let (one, apart) =
-            (self.standings.of(Contestant::OneThread)?, self.standings.of(Contestant::Apart)?);
+        let (one, apart) = (self.standings.of(Contestant::OneThread)?, self.standings.of(Contestant::Apart)?);
         let threads = self.extra.iter().find(|(key, _)| *key == "threads")?.1.as_f64()?;
         Some(threads * one.ratio(apart))
     }
