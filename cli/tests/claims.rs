@@ -142,6 +142,81 @@ fn claims_hold() {
     assert!(total >= 20, "only {total} claims were found");
 }
 
+/// What times and sizes are told in.
+const UNITS: [&str; 11] =
+    ["ns", "µs", "ms", "s", "second", "seconds", "minute", "minutes", "hours", "MB", "GB"];
+
+/// What commands that measure begin with.
+const PROGRAMS: [&str; 12] = [
+    "cargo",
+    "jbt",
+    "compare",
+    "gaps",
+    "python",
+    "python3",
+    "env",
+    "/usr/bin/time",
+    "checks/",
+    "fuzz/",
+    "outside/",
+    "python/",
+];
+
+/// The times, sizes and ratios of a section in prose and tables; what stands in code is no measurement.
+fn measured(section: &str) -> Vec<String> {
+    let prose: String = section.split('`').step_by(2).collect::<Vec<_>>().join("`");
+    let prose = plain(&prose).replace('|', " ");
+    let words: Vec<&str> = prose.split_whitespace().chain([""]).collect();
+    let bare = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).replace(',', "");
+    let is_measured = |words: &&[&str]| {
+        let unit = bare(words[1]);
+        bare(words[0]).parse::<f64>().is_ok()
+            && (UNITS.contains(&unit.as_str()) || (unit == "times" && words[2] == "as"))
+    };
+    words.windows(3).filter(is_measured).map(|words| words[..2].join(" ")).collect()
+}
+
+/// Whether a section names a command, or a record that names one.
+fn names_a_command(section: &str) -> bool {
+    let begins = |code: &str| {
+        let word = code.trim_start_matches(['`', '$', ' ']).split([' ', '`']).next().unwrap_or("");
+        PROGRAMS
+            .iter()
+            .any(|program| word == *program || (program.ends_with('/') && word.starts_with(program)))
+    };
+    let mut codes = section.split('`').skip(1).step_by(2);
+    codes.any(|code| code.lines().any(begins)) || section.contains("benches/record")
+}
+
+/// A section that tells what was measured tells by what.
+#[test]
+fn measurements_name_their_commands() {
+    let mut total = 0;
+    for (document, text) in documents() {
+        let mut sections: Vec<String> = vec![String::new()];
+        for line in text.lines() {
+            if line.starts_with("## ") {
+                sections.push(String::new());
+            }
+            let section = sections.last_mut().expect("there is one");
+            section.push_str(line);
+            section.push('\n');
+        }
+        for section in sections {
+            let found = measured(&section);
+            total += found.len();
+            let title = section.lines().next().unwrap_or_default();
+            assert!(
+                found.is_empty() || names_a_command(&section),
+                "{document}, {title}: no command beside {found:?}"
+            );
+        }
+    }
+    assert!(total >= 50, "only {total} measurements were found");
+    assert_eq!(measured("It takes 5 ms, or `6 s`, and 1,200 MB."), ["5 ms,", "1,200 MB."]);
+    assert!(names_a_command("see `cargo run` there") && !names_a_command("a `word` or a cargo"));
+}
+
 /// The folders of packages.
 const PACKAGES: [(&str, &str); 9] = [
     ("jbt", "runtime"),

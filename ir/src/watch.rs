@@ -160,6 +160,12 @@ impl Watches {
         self.active.is_some()
     }
 
+    /// Whether what they were offered for is still wanted. Each call asks: it is for whoever calls seldom.
+    #[must_use]
+    pub fn go_on(&self) -> bool {
+        self.offered.as_ref().is_none_or(|watch| watch())
+    }
+
     /// Does work under them and no others.
     pub fn hold<T>(&self, work: impl FnOnce() -> T) -> T {
         with(&OFFERED, self.offered.clone(), || with(&ACTIVE, self.active.clone(), work))

@@ -4,6 +4,7 @@
     python benches/workers.py strokes [RESOLUTION] [WORKERS]     200 curves, all heard everywhere; 448 cells
     python benches/workers.py particles [COUNT CELLS] [WORKERS]  a million particles of an array
     python benches/workers.py files [COUNT CELLS]                2 x 10^7 particles in files, into parts
+    python benches/workers.py paper [RESOLUTION]                 what the client does for the octopus at 4,096 cells
 
 Starting the workers does not count. Each line says whether the bytes are those of one process.
 """
@@ -25,6 +26,8 @@ import jbt.dask
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
+# Cells beside a brick that are sampled with it.
+REACH = 2
 
 
 def digest(mesh: jbt.Mesh) -> str:
@@ -141,6 +144,27 @@ def files(count: int = 20_000_000, cells: int = 512) -> None:
         print(f"  the client had {most / 1024:.0f} MB at most, {before / 1024:.0f} MB before")
 
 
+def paper(resolution: int = 4096) -> None:
+    """What the client does before and between the bricks. None of them is made."""
+    native = jbt.load(ROOT / "examples/hero.jbt")._native
+    lattice, _ = native.lattice(resolution, None, None)
+    source = jbt._jbt.RowSource(native, None)
+    print(f"the octopus at {resolution}: {len(source.shape()) / 1e3:.0f} kB of shape")
+    for edge in (256, 128):
+        asked, places = timed(lambda edge=edge: native.busy(lattice, edge, None))
+
+        def rows(edge: int = edge, places: Any = places) -> list[bytes]:
+            return [source.rows(*lattice.bounds(edge, list(place), REACH))[0] for place, _ in places]
+
+        took, parts = timed(rows)
+        size = sum(map(len, parts))
+        print(
+            f"  bricks of {edge}: {len(places):,}; ranges {asked:.1f} s; rows {took:.1f} s, "
+            f"{1e3 * took / len(places):.1f} ms and {size / 1e3 / len(places):.0f} kB a brick, {size / 1e6:.0f} MB",
+            flush=True,
+        )
+
+
 def main() -> None:
     warnings.simplefilter("ignore")
     words: dict[str, Callable[..., None]] = {
@@ -148,6 +172,7 @@ def main() -> None:
         "strokes": strokes,
         "particles": particles,
         "files": files,
+        "paper": paper,
     }
     word, *numbers = sys.argv[1:] or ["hero"]
     words[word](*(int(number) for number in numbers))

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use jbt_ir::watch;
+use jbt_ir::watch::{self, Watches};
 
 /// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
 pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
@@ -88,10 +88,11 @@ impl<'a, T, E> Job<'a, T, E> {
     pub fn run(self) -> Result<T, E> {
         let Self { work, mut watchers, tokens } = self;
         let goes_on = move || !tokens.iter().any(CancelToken::is_cancelled);
-        let asked = goes_on.clone();
+        let (asked, around) = (goes_on.clone(), Watches::present());
         let mut hook = move |part| {
             watchers.iter_mut().for_each(|watch| watch(part));
-            asked()
+            // Whoever does a job on the way of other work may have a token for all of it.
+            asked() && around.go_on()
         };
         watch::offer(Arc::new(goes_on), || work(&mut hook))
     }

@@ -156,6 +156,24 @@ fn looks_of_what_is_no_job_are_never_far_apart() {
     assert!(evaluated < MOST, "{evaluated:?}");
 }
 
+/// Work that has jobs in it stops by the token around it, at the next word of a job about its progress.
+#[test]
+fn jobs_stop_by_a_token_around_them() {
+    let solid = Solid::new(&Compiler::new(), &tree(HERO)).expect("it compiles");
+    let token = CancelToken::new();
+    let settings = Measure { fineness: Fineness::Resolution(64), ..Measure::default() };
+    let mut words = 0;
+    let measured = token.watches(|| {
+        let stop = |_| {
+            token.cancel();
+            words += 1;
+        };
+        solid.measure(&settings).on_progress(stop).run()
+    });
+    let error = measured.expect_err("it was cancelled");
+    assert_eq!((error.kind(), words), (ErrorKind::Cancelled, 1), "{error}");
+}
+
 #[test]
 fn evaluating_stops_on_all_threads() {
     let tree = tree(&sines(1_500));

@@ -20,8 +20,8 @@ pub enum Contestant {
     Whole,
     /// The compiler on one thread, beside itself on several.
     OneThread,
-    /// The same work on each of several threads at once, with one thread each: what the machine has for all of
-    /// them, where they wait for nobody.
+    /// The same work on each of several threads at once, with one thread each: what the machine has for all
+    /// of them, where they wait for nobody.
     Apart,
     /// The compiler's interpreter, beside its machine code.
     Lanes,

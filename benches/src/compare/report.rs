@@ -56,8 +56,8 @@ impl ResultRow {
         Some(self.standings.of(Contestant::OneThread)?.ratio(self.standings.of(Contestant::Ours)?))
     }
 
-    /// As many threads as there are on one work each, as a multiple of one thread: how many times as fast this
-    /// machine lets ours be.
+    /// As many threads as there are on one work each, as a multiple of one thread: how many times as fast
+    /// this machine lets ours be.
     #[must_use]
     pub fn ratio_machine(&self) -> Option<f64> {
         let (one, apart) = (self.standings.of(Contestant::OneThread)?, self.standings.of(Contestant::Apart)?);
