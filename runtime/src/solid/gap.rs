@@ -31,9 +31,6 @@ const CUT_WORK: u64 = 1 << 10;
 /// Cuts of one solid in search of a point inside. Thin ones have few.
 const MAX_FIRST_CUTS: usize = 1 << 12;
 
-/// Pairs that are popped between two looks whether the answer is wanted.
-const LOOK: u32 = 1 << 10;
-
 /// A distance between bounds, in units of the model.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
@@ -264,12 +261,8 @@ fn search(
         (high, count)
     };
     let (mut high, mut pairs) = meet(trees, [0, 0], &mut open);
-    let mut turns = 0;
     while let Some(GapPair { low, boxes, .. }) = open.pop() {
-        turns += 1;
-        if turns % LOOK == 0 {
-            watch::go_on()?;
-        }
+        watch::go_on()?;
         if high - low <= tolerance || pairs >= budget.pairs || budget.is_spent(trees) {
             return Ok(low);
         }

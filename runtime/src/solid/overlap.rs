@@ -35,9 +35,6 @@ const GREEDY_WORK: u64 = MAX_OVERLAP_WORK / 8;
 /// What a cut takes besides the rows that run in its box, in rows.
 const CUT_WORK: u64 = 1 << 10;
 
-/// Boxes that are cut between two looks whether the answer is wanted.
-const LOOK: u64 = 1 << 8;
-
 /// Steps of a climb at most.
 const MAX_CLIMB: usize = 48;
 
@@ -133,12 +130,8 @@ impl<'a> PairSearch<'a> {
         let around = grown(&self.whole, self.tolerance);
         let [a, b] = self.solids.map(|solid| solid.pruner.region(around));
         self.push(self.whole, [a?, b?], f32::NEG_INFINITY);
-        let mut turns = 0;
         while self.work < MAX_OVERLAP_WORK {
-            turns += 1;
-            if turns % LOOK == 0 {
-                watch::go_on()?;
-            }
+            watch::go_on()?;
             if self.is_greedy && self.work >= GREEDY_WORK {
                 self.is_greedy = false;
                 let open: Vec<PairBox> = std::mem::take(&mut self.open).into_vec();
@@ -160,14 +153,15 @@ impl<'a> PairSearch<'a> {
     fn left(mut self) -> Result<PairFound, EvalError> {
         let are_small = self.open.is_empty();
         let longest = self.open.iter().fold(self.small, |most, one| most.max(one.bounds.longest_side()));
-        let mut best = self.small_best;
-        let mut open = std::mem::take(&mut self.open).into_vec();
-        open.sort_unstable_by_key(|one| one.number);
-        for PairBox { bounds, middle, .. } in &open {
-            if best.is_none_or(|(value, _)| *middle > value) {
-                best = Some((*middle, *bounds));
-            }
-        }
+        // Of equals the one that was found first. What is no number is less than any.
+        let value = |one: &PairBox| one.middle.max(f32::NEG_INFINITY);
+        let order = |a: &&PairBox, b: &&PairBox| value(a).total_cmp(&value(b)).then(b.number.cmp(&a.number));
+        let best = self.open.iter().max_by(order);
+        let best = best.map(|one| (one.middle, one.bounds));
+        let best = match (self.small_best, best) {
+            (Some(small), Some(open)) => Some(if open.0 > small.0 { open } else { small }),
+            (small, open) => small.or(open),
+        };
         let Some((_, bounds)) = best else { return Ok(PairFound::Nothing) };
         let (_, best) = self.climb(bounds.center(), &bounds)?;
         Ok(PairFound::Left(LeftBoxes { longest, are_small, best }))
