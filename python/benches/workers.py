@@ -4,7 +4,7 @@
     python benches/workers.py strokes [RESOLUTION] [WORKERS]     200 curves, all heard everywhere; 448 cells
     python benches/workers.py particles [COUNT CELLS] [WORKERS]  a million particles of an array
     python benches/workers.py files [COUNT CELLS]                2 x 10^7 particles in files, into parts
-    python benches/workers.py paper [RESOLUTION]                 what the client does for the octopus at 4,096 cells
+    python benches/workers.py paper [RESOLUTION]                 the client's share, 4,096 cells of octopus
 
 Starting the workers does not count. Each line says whether the bytes are those of one process.
 """
@@ -18,6 +18,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -151,7 +152,7 @@ def paper(resolution: int = 4096) -> None:
     source = jbt._jbt.RowSource(native, None)
     print(f"the octopus at {resolution}: {len(source.shape()) / 1e3:.0f} kB of shape")
     for edge in (256, 128):
-        asked, places = timed(lambda edge=edge: native.busy(lattice, edge, None))
+        asked, places = timed(partial(native.busy, lattice, edge, None))
 
         def rows(edge: int = edge, places: Any = places) -> list[bytes]:
             return [source.rows(*lattice.bounds(edge, list(place), REACH))[0] for place, _ in places]
@@ -160,7 +161,8 @@ def paper(resolution: int = 4096) -> None:
         size = sum(map(len, parts))
         print(
             f"  bricks of {edge}: {len(places):,}; ranges {asked:.1f} s; rows {took:.1f} s, "
-            f"{1e3 * took / len(places):.1f} ms and {size / 1e3 / len(places):.0f} kB a brick, {size / 1e6:.0f} MB",
+            f"{1e3 * took / len(places):.1f} ms and {size / 1e3 / len(places):.0f} kB a brick, "
+            f"{size / 1e6:.0f} MB",
             flush=True,
         )
 
