@@ -25,10 +25,9 @@ from typing import Any
 import jbt
 import jbt.dask
 import numpy as np
+from jbt.dask._mesh import REACH
 
 ROOT = Path(__file__).resolve().parents[2]
-# Cells beside a brick that are sampled with it.
-REACH = 2
 
 
 def digest(mesh: jbt.Mesh) -> str:
@@ -151,18 +150,18 @@ def paper(resolution: int = 4096) -> None:
     lattice, _ = native.lattice(resolution, None, None)
     source = jbt._jbt.RowSource(native, None)
     print(f"the octopus at {resolution}: {len(source.shape()) / 1e3:.0f} kB of shape")
+
+    def rows(edge: int, places: list[Any]) -> int:
+        """Bytes of the rows of all bricks."""
+        return sum(len(source.rows(*lattice.bounds(edge, list(place), REACH))[0]) for place, _ in places)
+
     for edge in (256, 128):
         asked, places = timed(partial(native.busy, lattice, edge, None))
-
-        def rows(edge: int = edge, places: Any = places) -> list[bytes]:
-            return [source.rows(*lattice.bounds(edge, list(place), REACH))[0] for place, _ in places]
-
-        took, parts = timed(rows)
-        size = sum(map(len, parts))
+        took, size = timed(partial(rows, edge, places))
+        count = len(places)
         print(
-            f"  bricks of {edge}: {len(places):,}; ranges {asked:.1f} s; rows {took:.1f} s, "
-            f"{1e3 * took / len(places):.1f} ms and {size / 1e3 / len(places):.0f} kB a brick, "
-            f"{size / 1e6:.0f} MB",
+            f"  bricks of {edge}: {count:,}; ranges {asked:.1f} s; rows {took:.1f} s, "
+            f"{1e3 * took / count:.1f} ms and {size / 1e3 / count:.0f} kB a brick, {size / 1e6:.0f} MB",
             flush=True,
         )
 

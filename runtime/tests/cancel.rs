@@ -156,22 +156,23 @@ fn looks_of_what_is_no_job_are_never_far_apart() {
     assert!(evaluated < MOST, "{evaluated:?}");
 }
 
-/// Work that has jobs in it stops by the token around it, at the next word of a job about its progress.
+/// Work that has jobs in it stops by the token around it, also where a job compiles and evaluates nothing any
+/// more: at its last word.
 #[test]
 fn jobs_stop_by_a_token_around_them() {
-    let solid = Solid::new(&Compiler::new(), &tree(HERO)).expect("it compiles");
+    let (compiler, tree) = (Compiler::new(), tree(HERO));
     let token = CancelToken::new();
-    let settings = Measure { fineness: Fineness::Resolution(64), ..Measure::default() };
-    let mut words = 0;
-    let measured = token.watches(|| {
-        let stop = |_| {
-            token.cancel();
-            words += 1;
+    let settings = Polygonize { fineness: Fineness::Resolution(16), ..Polygonize::default() };
+    let made = token.watches(|| {
+        let stop = |part| {
+            if part == 1.0 {
+                token.cancel();
+            }
         };
-        solid.measure(&settings).on_progress(stop).run()
+        settings.mesh(&compiler, &tree).on_progress(stop).run().map(drop)
     });
-    let error = measured.expect_err("it was cancelled");
-    assert_eq!((error.kind(), words), (ErrorKind::Cancelled, 1), "{error}");
+    let error = made.expect_err("it was cancelled");
+    assert_eq!(error.kind(), ErrorKind::Cancelled, "{error}");
 }
 
 #[test]

@@ -23,7 +23,9 @@ use jbt::export::{Format, write};
 use jbt::sample::Sampler;
 use jbt::solid::{Measure, PartSolids};
 use jbt::statistics::Statistics;
-use jbt::{Box3, Compiler, Engine, Fineness, Model, Polygonize, Query, Render, Renderer, Solid, Task};
+use jbt::{
+    Box3, CheckedTree, Compiler, Engine, Fineness, Model, Polygonize, Query, Render, Renderer, Solid, Task,
+};
 use jbt_testkit::gaps::WorkGaps;
 use jbt_testkit::scene::model;
 
@@ -38,8 +40,7 @@ part "cross" { union { box { center (-2 0 0) half (0.5 0.9 0.9) radius 0.2 } box
 "#;
 
 /// The gaps of all tasks.
-fn gaps(model: &Model, engine: Engine) -> Vec<(&'static str, Duration)> {
-    let tree = &model.check().expect("the model is right");
+fn gaps(model: &Model, tree: &CheckedTree, engine: Engine) -> Vec<(&'static str, Duration)> {
     let compiler = Compiler::for_engine(engine);
     let compiled = compiler.compile(tree);
     let mut told = Vec::new();
@@ -106,9 +107,8 @@ fn gaps(model: &Model, engine: Engine) -> Vec<(&'static str, Duration)> {
 }
 
 /// The gaps of a mesh of this resolution, and of writing it in each format.
-fn large_gaps(model: &Model, engine: Engine, resolution: usize) -> Vec<(String, Duration)> {
-    let tree = model.check().expect("the model is right");
-    let compiled = Compiler::for_engine(engine).compile(&tree);
+fn large_gaps(tree: &CheckedTree, engine: Engine, resolution: usize) -> Vec<(String, Duration)> {
+    let compiled = Compiler::for_engine(engine).compile(tree);
     let mesh = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
     let mut made = None;
     let gap = WorkGaps::longest(|gaps| made = mesh.with(&compiled).on_progress(|_| gaps.look()).run().ok());
@@ -168,11 +168,14 @@ fn main() {
     let mut most = Duration::ZERO;
     for (name, text) in scenes().into_iter().filter(|(name, _)| name.contains(&part)) {
         let model = model(&text);
+        let tree = model.check().expect("the scene is right");
         for one in Engine::ALL.into_iter().filter(|one| engine.as_ref().is_none_or(|name| name == one.name()))
         {
             let told: Vec<(String, Duration)> = pool.install(|| match resolution {
-                Some(resolution) => large_gaps(&model, one, resolution),
-                None => gaps(&model, one).into_iter().map(|(task, gap)| (task.to_owned(), gap)).collect(),
+                Some(resolution) => large_gaps(&tree, one, resolution),
+                None => {
+                    gaps(&model, &tree, one).into_iter().map(|(task, gap)| (task.to_owned(), gap)).collect()
+                }
             });
             let words = told.iter().map(|(task, gap)| {
                 let mark = if *gap > MOST { "!" } else { "" };

@@ -56,15 +56,6 @@ impl ResultRow {
         Some(self.standings.of(Contestant::OneThread)?.ratio(self.standings.of(Contestant::Ours)?))
     }
 
-    /// As many threads as there are on one work each, as a multiple of one thread: how many times as fast
-    /// this machine lets ours be.
-    #[must_use]
-    pub fn ratio_machine(&self) -> Option<f64> {
-        let (one, apart) = (self.standings.of(Contestant::OneThread)?, self.standings.of(Contestant::Apart)?);
-        let threads = self.extra.iter().find(|(key, _)| *key == "threads")?.1.as_f64()?;
-        Some(threads * one.ratio(apart))
-    }
-
     /// `ok`, or who was not timed and why.
     #[must_use]
     pub fn checksum(&self) -> String {
@@ -98,7 +89,6 @@ impl ResultRow {
             ("ratio_limit", self.ratio_limit()),
             ("ratio_fidget", self.ratio_fidget()),
             ("ratio_threads", self.ratio_threads()),
-            ("ratio_machine", self.ratio_machine()),
         ];
         for (name, ratio) in ratios {
             if let Some(ratio) = ratio {

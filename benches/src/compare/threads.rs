@@ -13,7 +13,7 @@ use super::contest::{Contest, Contestant};
 use super::mesh::{MeshTask, task_of_blobs, task_of_particles};
 use super::options::Options;
 use super::picture::{octopus, pool};
-use super::report::ResultRow;
+use super::report::{ResultRow, rounded};
 use super::unions;
 
 /// Cells along the longest side of the octopus: as many as make a fine mesh, and as many as make 5.4 million
@@ -132,14 +132,11 @@ fn row(
     triangles: usize,
     options: Options,
 ) -> ResultRow {
-    ResultRow {
-        case: "threads",
-        of,
-        primitives,
-        points,
-        unit: "run",
-        units: 1.0,
-        standings: contest.run(options.effort()),
-        extra: vec![("threads", json!(options.threads)), ("triangles", json!(triangles))],
+    let standings = contest.run(options.effort());
+    let mut extra = vec![("threads", json!(options.threads)), ("triangles", json!(triangles))];
+    let of_one = standings.of(Contestant::OneThread).zip(standings.of(Contestant::Apart));
+    if let Some((one, apart)) = of_one {
+        extra.push(("ratio_machine", json!(rounded(options.threads as f64 * one.ratio(apart)))));
     }
+    ResultRow { case: "threads", of, primitives, points, unit: "run", units: 1.0, standings, extra }
 }

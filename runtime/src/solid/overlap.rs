@@ -156,13 +156,11 @@ impl<'a> PairSearch<'a> {
         // Of equals the one that was found first. What is no number is less than any.
         let value = |one: &PairBox| one.middle.max(f32::NEG_INFINITY);
         let order = |a: &&PairBox, b: &&PairBox| value(a).total_cmp(&value(b)).then(b.number.cmp(&a.number));
-        let best = self.open.iter().max_by(order);
-        let best = best.map(|one| (one.middle, one.bounds));
-        let best = match (self.small_best, best) {
-            (Some(small), Some(open)) => Some(if open.0 > small.0 { open } else { small }),
-            (small, open) => small.or(open),
+        let open = self.open.iter().max_by(order).map(|one| (one.middle, one.bounds));
+        let is_best = |(value, _): &(f32, Box3)| self.small_best.is_none_or(|(small, _)| *value > small);
+        let Some((_, bounds)) = open.filter(is_best).or(self.small_best) else {
+            return Ok(PairFound::Nothing);
         };
-        let Some((_, bounds)) = best else { return Ok(PairFound::Nothing) };
         let (_, best) = self.climb(bounds.center(), &bounds)?;
         Ok(PairFound::Left(LeftBoxes { longest, are_small, best }))
     }
