@@ -19,7 +19,7 @@ pub(crate) struct NoMemory {
     pub(crate) bytes: usize,
 }
 
-/// An empty vector with room for this many values, in large pages where it has whole ones.
+/// An empty vector with room for this many values, in large pages if it fills half of one.
 pub(crate) fn room<T>(length: usize) -> Result<Vec<T>, NoMemory> {
     let mut values = Vec::new();
     let bytes = length.saturating_mul(size_of::<T>());
@@ -79,18 +79,19 @@ impl<T: Copy + Default> FilledVector<T> {
     }
 }
 
-/// Asks the system for large pages, as far as the room has whole ones: it may take no more memory than it has
-/// bytes. Nothing changes where there are none, or they are not given.
+/// Asks the system for large pages, those at the ends of the room included: what lies beside it in these is
+/// most often the next one. Nothing changes where there are none, or they are not given.
 #[cfg(all(target_os = "linux", feature = "parallel", not(miri)))]
 fn ask_for_large_pages<T>(room: &mut [MaybeUninit<T>]) {
     /// Bytes of a page, where small ones have 4 KiB.
     const LARGE: usize = 2 << 20;
-    let start = room.as_mut_ptr().cast::<std::ffi::c_void>();
-    let (first, end) =
-        (start.addr().next_multiple_of(LARGE), (start.addr() + size_of_val(room)) / LARGE * LARGE);
-    if first < end {
+    let (start, bytes) = (room.as_mut_ptr().cast::<std::ffi::c_void>(), size_of_val(room));
+    if bytes >= LARGE / 2 {
+        let first = start.addr() / LARGE * LARGE;
+        let end = (start.addr() + bytes).next_multiple_of(LARGE);
         let advice = rustix::mm::Advice::LinuxHugepage;
-        // SAFETY: these bytes are of the room, which nobody else has, and their values stay what they are.
+        // SAFETY: this advice is about the pages that the system takes for memory from now on. No value
+        // changes, be it of the room or of what is beside it.
         let _ = unsafe { rustix::mm::madvise(start.map_addr(|_| first), end - first, advice) };
     }
 }

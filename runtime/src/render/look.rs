@@ -100,13 +100,16 @@ impl Sight<'_> {
         let regions = self.regions(&points)?;
         let evaluator = &self.frame.renderer.evaluator;
         let mut planes = vec![vec![0.0; TOGETHER]; evaluator.layout().names().len()];
+        let mut at = [[0.0; TOGETHER]; 3];
         for ((region, points), some) in
             regions.iter().zip(points.chunks(TOGETHER)).zip(approaches.chunks_mut(TOGETHER))
         {
             let count = points.len();
-            let at: [Vec<f32>; 3] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect());
+            for (index, point) in points.iter().enumerate() {
+                (0..3).for_each(|axis| at[axis][index] = point[axis]);
+            }
             let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(|plane| &mut plane[..count]).collect();
-            evaluator.eval_region(region, at.each_ref().map(Vec::as_slice), &mut answers)?;
+            evaluator.eval_region(region, at.each_ref().map(|axis| &axis[..count]), &mut answers)?;
             let each = evaluator.evaluations_in(region) as f32;
             for (index, approach) in some.iter_mut().enumerate() {
                 evaluations[approach.cast] += each;

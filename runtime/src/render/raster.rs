@@ -197,6 +197,11 @@ impl<'a> MeshRaster<'a> {
         [x * self.camera.half[0], y * self.camera.half[1], 1.0]
     }
 
+    /// Whether no sample of a tile meets a triangle, as its bin is empty.
+    pub fn is_bare(&self, number: usize) -> bool {
+        self.starts[number] == self.starts[number + 1]
+    }
+
     /// The first triangles at all samples of a tile, by the tile's number; a pixel has `parts` times as many
     /// samples in each direction.
     pub fn tile(&self, number: usize, area: &TileArea, parts: u32) -> MeshTile {

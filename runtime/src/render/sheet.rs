@@ -154,7 +154,7 @@ fn around(area: &TileArea, pixels: &[[u32; 2]]) -> TileArea {
 
 /// What a tile sees.
 struct TileSight {
-    /// Row by row.
+    /// In the order of [`pixels`]; empty where a tile is bare.
     seen: Vec<SeenPoint>,
     is_exact: bool,
     rays: u64,
@@ -280,9 +280,18 @@ impl<'a> PictureSheet<'a> {
         })
     }
 
-    /// What a tile sees, in the order of [`pixels`].
+    /// Whether no ray of a tile meets anything: its pixels stay what they are at the beginning.
+    fn is_bare(&self, tile: usize) -> bool {
+        let is_led = self.frame.render.quality == Quality::Draft && !self.guide.is_cut;
+        is_led && self.raster.as_ref().is_some_and(|raster| raster.is_bare(tile))
+    }
+
+    /// What a tile sees.
     fn look_tile(&self, tile: usize, area: &TileArea) -> Result<TileSight, RenderError> {
         let frame = self.frame;
+        if self.is_bare(tile) {
+            return Ok(TileSight { seen: Vec::new(), is_exact: false, rays: 0, evaluations: 0.0 });
+        }
         let pixels = pixels(area);
         let places: Vec<[f64; 2]> = pixels.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
         let Some(raster) = &self.raster else {
@@ -379,6 +388,9 @@ impl<'a> PictureSheet<'a> {
     ) -> Result<(), RenderError> {
         let rows = [first, first + (kept.len() / self.width()) as u32];
         let develop = |sheet: &Self, tile: usize, area: &TileArea| {
+            if sheet.is_bare(tile) {
+                return Ok((Vec::new(), Vec::new(), 0, 0.0));
+            }
             let inner: Vec<[u32; 2]> =
                 pixels(area).into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
             let (values, rays, evaluations) = sheet.develop_tile((tile, area), &inner)?;
@@ -439,7 +451,12 @@ impl<'a> PictureSheet<'a> {
         let values = pixels.iter().zip(is_edge).map(|(&pixel, is_edge)| {
             if !is_edge {
                 let index = self.index(pixel);
-                return self.seen[index].value(self.frame, &self.light_at(index));
+                return match self.seen[index].kind {
+                    SeenKind::Nothing => [0.0; 4],
+                    SeenKind::Surface | SeenKind::Ground => {
+                        self.seen[index].value(self.frame, &self.light_at(index))
+                    }
+                };
             }
             let mut sum = [0.0; 4];
             for seen in seen.next().unwrap_or_default() {
