@@ -108,14 +108,25 @@ fn send(
     (evaluations, number): (&mut f64, &mut u64),
 ) -> Result<(), RenderError> {
     // All together: the more rays there are, the more of them are nearly parallel.
-    let sent: Vec<Sent> = (0..count)
-        .flat_map(|index| spots.iter().map(move |spot| (spot, index)))
-        .map(|(spot, index)| aim(spot, spot.sample * count + index))
-        .collect();
-    let rays: Vec<Option<Ray>> = sent.iter().map(|&(_, ray)| ray).collect();
-    let blocked = blocked(frame, &rays, evaluations, number)?;
-    for (at, ((direction, _), _)) in sent.iter().zip(blocked).enumerate().filter(|(_, (_, blocked))| !blocked)
-    {
+    let all = spots.len() * count as usize;
+    let mut directions = Vec::with_capacity(all);
+    let (mut rays, mut sent) = (Vec::with_capacity(all), Vec::with_capacity(all));
+    for index in 0..count {
+        for spot in spots {
+            let (direction, ray) = aim(spot, spot.sample * count + index);
+            if let Some(ray) = ray {
+                sent.push(directions.len());
+                rays.push(ray);
+            }
+            directions.push(direction);
+        }
+    }
+    *number += rays.len() as u64;
+    let mut is_blocked = vec![false; all];
+    for (&at, blocked) in sent.iter().zip(blocked(frame, &rays, evaluations)?) {
+        is_blocked[at] = blocked;
+    }
+    for (at, direction) in directions.iter().enumerate().filter(|&(at, _)| !is_blocked[at]) {
         let spot = at % spots.len();
         arrive(&mut lights[spot], &spots[spot], *direction);
     }
@@ -196,55 +207,48 @@ fn way(ray: &Ray) -> [i8; 3] {
     ray.direction.map(|coordinate| (coordinate * WAYS).floor() as i8)
 }
 
-/// Which rays are blocked. A missing ray is not.
-fn blocked(
-    frame: &Frame<'_>,
-    rays: &[Option<Ray>],
-    evaluations: &mut f64,
-    count: &mut u64,
-) -> Result<Vec<bool>, RenderError> {
-    let mut asked: Vec<(usize, Ray)> =
-        rays.iter().enumerate().filter_map(|(at, ray)| ray.map(|ray| (at, ray))).collect();
+/// Which rays are blocked.
+fn blocked(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
     let lit = frame.guide.as_ref().and_then(|guide| Some((guide.hierarchy.as_ref()?, guide.cell)));
-    if lit.is_none() {
-        asked.sort_by_key(|(_, ray)| way(ray));
-    }
-    let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
-    *count += some.len() as u64;
-    let found = match lit {
+    let mut blocked = match lit {
         Some((hierarchy, cell)) => {
-            let segments: Vec<RayPart> = some.iter().map(RayPart::of).collect();
+            let segments: Vec<RayPart> = rays.iter().map(RayPart::of).collect();
             hierarchy.any_of(&segments, (BURIED * cell) as f32)
         }
         None => {
-            let found = frame.renderer.tracer.any_of_local(&some, frame.light_tolerance())?;
+            let mut order: Vec<usize> = (0..rays.len()).collect();
+            order.sort_by_key(|&ray| way(&rays[ray]));
+            let sorted: Vec<Ray> = order.iter().map(|&ray| rays[ray]).collect();
+            let found = frame.renderer.tracer.any_of_local(&sorted, frame.light_tolerance())?;
             *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
-            found.blocked
+            let mut blocked = vec![false; rays.len()];
+            order.iter().zip(found.blocked).for_each(|(&ray, is_blocked)| blocked[ray] = is_blocked);
+            blocked
         }
     };
-    let cut = cut(frame, &some, evaluations)?;
-    let mut answers = vec![false; rays.len()];
-    for ((&(at, _), &blocked), cut) in asked.iter().zip(&found).zip(cut) {
-        answers[at] = blocked || cut;
-    }
-    Ok(answers)
+    add_cut(frame, rays, &mut blocked, evaluations)?;
+    Ok(blocked)
 }
 
-/// Which rays begin inside the solid, where the region cuts it: they may hit no surface.
-fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
-    let mut cut = vec![false; rays.len()];
+/// Adds the rays that begin inside the solid, where the region cuts it: they may hit no surface.
+fn add_cut(
+    frame: &Frame<'_>,
+    rays: &[Ray],
+    blocked: &mut [bool],
+    evaluations: &mut f64,
+) -> Result<(), RenderError> {
     if frame.render.region.is_none() || frame.guide.as_ref().is_some_and(|guide| !guide.is_cut) {
-        return Ok(cut);
+        return Ok(());
     }
     let enter: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].span[0] > 0.0).collect();
     let starts: Vec<[f32; 3]> = enter.iter().map(|&ray| start(&rays[ray])).collect();
     let tracer = &frame.renderer.tracer;
-    let Some((region, field)) = tracer.fields(&starts)? else { return Ok(cut) };
+    let Some((region, field)) = tracer.fields(&starts)? else { return Ok(()) };
     *evaluations += (starts.len() as u64 * tracer.evaluations_in(&region)) as f64;
     for (&ray, &value) in enter.iter().zip(&field) {
-        cut[ray] = value >= tracer.iso();
+        blocked[ray] |= value >= tracer.iso();
     }
-    Ok(cut)
+    Ok(())
 }
 
 /// A spot a little above a place of the surface, so that its rays do not hit that place.

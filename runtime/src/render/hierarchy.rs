@@ -10,8 +10,7 @@
 //! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is
 //! tested against eight boxes, or eight triangles, at once.
 //!
-//! Clusters, boxes and the order of a walk depend on the mesh alone, and no product is fused with a sum. So
-//! answers have the same bits for every instruction set and any number of threads.
+//! Clusters and boxes depend on the mesh alone, and no product is fused with a sum. So answers have the same bits for every instruction set and any number of threads.
 
 use super::beam::SegmentBeam;
 use super::boxes::{BoxNode, Corners, EightLanes, NOWHERE, RayPart, WIDE, finite_lanes, inverse, joined};
@@ -85,6 +84,18 @@ impl TriangleCluster {
         }
         (distances, behind)
     }
+
+    /// Whether a segment meets a triangle: see [`Hierarchy::any_of`].
+    #[inline(always)]
+    fn blocks(&self, segment: &RayPart, depth: f32) -> bool {
+        let (distances, behind) = self.meet(segment, segment.reach);
+        let mut counts = 0;
+        for i in 0..WIDE {
+            let is_met = u32::from(distances[i] < f32::INFINITY);
+            counts |= is_met & (u32::from(distances[i] > depth) | (1 - behind[i]));
+        }
+        counts != 0
+    }
 }
 
 /// The clusters beside a bundle of segments.
@@ -97,56 +108,25 @@ struct NearClusters {
 }
 
 impl NearClusters {
-    /// Shows `visit` the clusters whose boxes a segment enters: see [`Hierarchy::walk`].
+    /// Whether a segment meets one of them.
     #[inline(always)]
-    fn walk(
-        &self,
-        hierarchy: &Hierarchy,
-        segment: &RayPart,
-        mut visit: impl FnMut(&TriangleCluster, f32) -> f32,
-    ) {
-        let (inverse, mut reach) = (inverse(segment.direction), segment.reach);
+    fn block(&self, hierarchy: &Hierarchy, segment: &RayPart, depth: f32) -> bool {
+        let inverse = inverse(segment.direction);
         for (node, clusters) in self.boxes.iter().zip(self.clusters.chunks(WIDE)) {
-            if clusters[0].0 > reach {
-                return;
+            if clusters[0].0 > segment.reach {
+                return false;
             }
-            let entered = node.enter(segment.origin, inverse, reach);
-            let mut mask = finite_lanes(&entered);
+            let mut mask = finite_lanes(&node.enter(segment.origin, inverse, segment.reach));
             while mask != 0 {
                 let lane = (mask.trailing_zeros() & 7) as usize;
                 mask &= mask - 1;
-                if entered[lane] <= reach {
-                    reach = visit(&hierarchy.clusters[clusters[lane].1 as usize], reach);
+                if hierarchy.clusters[clusters[lane].1 as usize].blocks(segment, depth) {
+                    return true;
                 }
             }
         }
+        false
     }
-}
-
-/// A node that waits: where the ray enters it, its level and its number.
-#[derive(Clone, Copy)]
-struct WaitingNode {
-    near: f32,
-    level: u32,
-    number: u32,
-}
-
-/// The lanes whose bits are set in a mask, the farthest one first, and their number.
-#[inline(always)]
-fn sorted(mut mask: u32, entered: &EightLanes) -> ([u8; WIDE], usize) {
-    let (mut order, mut count) = ([0_u8; WIDE], 0);
-    while mask != 0 {
-        let lane = (mask.trailing_zeros() & 7) as u8;
-        mask &= mask - 1;
-        let mut at = count;
-        while at > 0 && entered[usize::from(order[at - 1] & 7)] < entered[usize::from(lane)] {
-            order[at & 7] = order[at - 1];
-            at -= 1;
-        }
-        order[at & 7] = lane;
-        count += 1;
-    }
-    (order, count)
 }
 
 impl Hierarchy {
@@ -218,55 +198,30 @@ impl Hierarchy {
         true
     }
 
-    /// Shows `visit` the clusters that a ray may meet, the nearest first, roughly. It returns the distance up
-    /// to which the walk goes on, or less than 0 to end it.
+    /// Whether a segment meets the mesh.
     #[inline(always)]
-    fn walk(&self, ray: &RayPart, mut visit: impl FnMut(&TriangleCluster, f32) -> f32) {
-        let (inverse, mut reach) = (inverse(ray.direction), ray.reach);
-        let mut waiting =
-            [WaitingNode { near: 0.0, level: self.levels.len() as u32 - 1, number: 0 }; WAITING];
+    fn blocks(&self, segment: &RayPart, depth: f32) -> bool {
+        let inverse = inverse(segment.direction);
+        let mut waiting = [(self.levels.len() as u32 - 1, 0_u32); WAITING];
         let mut count = 1;
         while count > 0 {
             count -= 1;
-            let WaitingNode { near, level, number } = waiting[count];
-            if near > reach {
-                continue;
-            }
-            let entered = self.levels[level as usize][number as usize].enter(ray.origin, inverse, reach);
-            let (order, found) = sorted(finite_lanes(&entered), &entered);
-            let first = number * WIDE as u32;
-            if level > 0 {
-                for &lane in &order[..found] {
-                    let near = entered[usize::from(lane & 7)];
-                    waiting[count] = WaitingNode { near, level: level - 1, number: first + u32::from(lane) };
+            let (level, number) = waiting[count];
+            let node = &self.levels[level as usize][number as usize];
+            let mut mask = finite_lanes(&node.enter(segment.origin, inverse, segment.reach));
+            while mask != 0 {
+                let number = number * WIDE as u32 + (mask.trailing_zeros() & 7);
+                mask &= mask - 1;
+                if level > 0 {
+                    waiting[count] = (level - 1, number);
                     count += 1;
+                } else if self.clusters[number as usize].blocks(segment, depth) {
+                    return true;
                 }
-                continue;
-            }
-            for &lane in order[..found].iter().rev() {
-                if entered[usize::from(lane & 7)] <= reach {
-                    reach = visit(&self.clusters[(first + u32::from(lane)) as usize], reach);
-                }
-            }
-            if reach < 0.0 {
-                return;
             }
         }
+        false
     }
-}
-
-/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to
-/// look on: less than 0 if it does.
-#[inline(always)]
-fn any_in(cluster: &TriangleCluster, segment: &RayPart, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
-    let (distances, behind) = cluster.meet(segment, segment.reach);
-    let mut counts = 0;
-    for i in 0..WIDE {
-        let is_met = u32::from(distances[i] < f32::INFINITY);
-        counts |= is_met & (u32::from(distances[i] > depth) | (1 - behind[i]));
-    }
-    *met = counts != 0;
-    if *met { -1.0 } else { reach }
 }
 
 // What is called from the loops below is always inlined: it takes their instruction set.
@@ -277,11 +232,11 @@ fn any_all(hierarchy: &Hierarchy, segments: &[RayPart], depth: f32, met: &mut [b
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
         let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
-            if is_narrow {
-                near.walk(hierarchy, segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));
+            *met = if is_narrow {
+                near.block(hierarchy, segment, depth)
             } else {
-                hierarchy.walk(segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));
-            }
+                hierarchy.blocks(segment, depth)
+            };
         }
     }
 }

@@ -42,14 +42,12 @@ impl Sequence {
 
 /// The second coordinate of a point in the Sobol' sequence, as the 32 bits after the binary point; the first
 /// coordinate is the index with its bits reversed.
+///
+/// Bit `j` after the point is the sum, modulo 2, of the bits `k` of the index with an odd binomial coefficient
+/// of `k` and `j`. By Lucas' theorem these are the `k` that have all bits of `j`: one step for each bit of `k`.
 fn sobol(index: u32) -> u32 {
-    let (mut sum, mut direction, mut rest) = (0, 1 << 31, index);
-    while rest != 0 {
-        sum ^= direction * (rest & 1);
-        direction ^= direction >> 1;
-        rest >>= 1;
-    }
-    sum
+    let steps = [(1, 0x5555_5555), (2, 0x3333_3333), (4, 0x0f0f_0f0f), (8, 0x00ff_00ff), (16, 0x0000_ffff)];
+    steps.iter().fold(index, |bits, (shift, mask)| bits ^ bits >> shift & mask).reverse_bits()
 }
 
 /// Owen's scrambling (1995): each bit is flipped or not by a hash of the bits above it. Evenly spread points
@@ -125,6 +123,19 @@ mod tests {
         }
         assert_ne!(Sequence::new([0, 0], 0, 16).point(0), Sequence::new([1, 0], 0, 16).point(0));
         assert_ne!(Sequence::new([0, 0], 0, 16).point(0), Sequence::new([0, 0], 1, 16).point(0));
+    }
+
+    /// By the direction numbers of the primitive polynomial x + 1 (Joe and Kuo, 2008).
+    #[test]
+    fn the_second_coordinate_is_that_of_sobol() {
+        for index in [0, 1, 2, 3, 4, 5, 1000, 0x1234_5678, 0x8000_0000, u32::MAX] {
+            let (mut sum, mut direction) = (0, 1 << 31);
+            for bit in 0..32 {
+                sum ^= direction * (index >> bit & 1);
+                direction ^= direction >> 1;
+            }
+            assert_eq!(sobol(index), sum, "{index}");
+        }
     }
 
     /// The mean of the cosine over directions weighted by it is 2/3.
