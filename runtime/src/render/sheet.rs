@@ -98,16 +98,21 @@ pub fn expose(
 /// The part of the work that is done when rays begin.
 pub const BEGIN: f32 = 0.2;
 
+/// The rows of the blocks of a tile: the first pixel of each, and its length. Blocks come one after the other.
+fn block_rows(area: &TileArea) -> impl Iterator<Item = ([u32; 2], u32)> {
+    let TileArea { x: left, y: top, width, height } = *area;
+    (0..height).step_by(BLOCK as usize).flat_map(move |y| {
+        (0..width).step_by(BLOCK as usize).flat_map(move |x| {
+            let length = BLOCK.min(width - x);
+            (y..(y + BLOCK).min(height)).map(move |row| ([left + x, top + row], length))
+        })
+    })
+}
+
 /// The pixels of a tile, block by block: neighbours in the list are neighbours in the picture.
 fn pixels(area: &TileArea) -> Vec<[u32; 2]> {
     let mut pixels = Vec::with_capacity((area.width * area.height) as usize);
-    for y in (0..area.height).step_by(BLOCK as usize) {
-        for x in (0..area.width).step_by(BLOCK as usize) {
-            for row in y..(y + BLOCK).min(area.height) {
-                pixels.extend((x..(x + BLOCK).min(area.width)).map(|column| [area.x + column, area.y + row]));
-            }
-        }
-    }
+    block_rows(area).for_each(|([x, y], length)| pixels.extend((x..x + length).map(|column| [column, y])));
     pixels
 }
 
@@ -234,11 +239,15 @@ impl<'a> PictureSheet<'a> {
     /// Finds what each pixel sees.
     fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
         self.of_tiles((telling, end), Self::look_tile, |sheet, area, sight| {
-            for (pixel, seen) in pixels(area).into_iter().zip(sight.seen) {
-                let index = sheet.index(pixel);
-                sheet.seen[index] = seen;
-                sheet.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+            let mut rest = &sight.seen[..];
+            for (first, length) in block_rows(area) {
+                let Some((row, after)) = rest.split_at_checked(length as usize) else { break };
+                let index = sheet.index(first);
+                sheet.seen[index..][..row.len()].copy_from_slice(row);
+                rest = after;
             }
+            let hits = sight.seen.iter().filter(|seen| seen.kind == SeenKind::Surface).count();
+            sheet.cost.pixels_hit += hits as u64;
             sheet.is_exact.push(sight.is_exact);
             sheet.cost.rays.camera += sight.rays;
             sheet.cost.evaluations += sight.evaluations;
