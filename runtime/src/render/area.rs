@@ -2,6 +2,8 @@
 
 /// The approximate number of rays of a full tile.
 const PACKET: u32 = 1024;
+/// Pixels along the side of a block whose rays are neighbours in a packet.
+const BLOCK: u32 = 8;
 
 /// A part of a picture: its first column and row, and its size.
 #[derive(Clone, Copy)]
@@ -38,5 +40,36 @@ impl TileArea {
     /// A pixel of the picture, by its index in the tile.
     pub fn pixel(&self, index: usize) -> [u32; 2] {
         [self.x + index as u32 % self.width, self.y + index as u32 / self.width]
+    }
+
+    /// The rows of the tile's blocks: the first pixel of each, and its length. One block follows the other.
+    pub fn block_rows(&self) -> impl Iterator<Item = ([u32; 2], u32)> {
+        let Self { x: left, y: top, width, height } = *self;
+        (0..height).step_by(BLOCK as usize).flat_map(move |y| {
+            (0..width).step_by(BLOCK as usize).flat_map(move |x| {
+                let length = BLOCK.min(width - x);
+                (y..(y + BLOCK).min(height)).map(move |row| ([left + x, top + row], length))
+            })
+        })
+    }
+
+    /// The pixels of the tile, block by block: neighbours in the list are neighbours in the picture.
+    pub fn pixels(&self) -> Vec<[u32; 2]> {
+        let mut pixels = Vec::with_capacity((self.width * self.height) as usize);
+        self.block_rows()
+            .for_each(|([x, y], length)| pixels.extend((x..x + length).map(|column| [column, y])));
+        pixels
+    }
+
+    /// The smallest part of the tile that holds some pixels of it; at least one.
+    pub fn around(&self, pixels: &[[u32; 2]]) -> Self {
+        let end = |[x, y]: [u32; 2]| [x + 1, y + 1];
+        let (low, high) = pixels.iter().fold(([u32::MAX; 2], [self.x, self.y]), |(low, high), &pixel| {
+            (
+                [0, 1].map(|axis| low[axis].min(pixel[axis])),
+                [0, 1].map(|axis| high[axis].max(end(pixel)[axis])),
+            )
+        });
+        Self { x: low[0], y: low[1], width: high[0] - low[0], height: high[1] - low[1] }
     }
 }

@@ -10,7 +10,8 @@
 //! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is
 //! tested against eight boxes, or eight triangles, at once.
 //!
-//! Clusters and boxes depend on the mesh alone, and no product is fused with a sum. So answers have the same bits for every instruction set and any number of threads.
+//! Clusters and boxes depend on the mesh alone, and no product is fused with a sum. So answers have the same
+//! bits for every instruction set and any number of threads.
 
 use super::beam::SegmentBeam;
 use super::boxes::{BoxNode, Corners, EightLanes, NOWHERE, RayPart, WIDE, finite_lanes, inverse, joined};

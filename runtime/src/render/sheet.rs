@@ -35,8 +35,6 @@ use jbt_ir::limits::MAX_BAND_PIXELS;
 
 /// The number of tiles between two reports of progress.
 const STRIDE: usize = 32;
-/// Pixels along the side of a block whose rays are neighbours in a packet.
-const BLOCK: u32 = 8;
 /// Pixels from one exact ray to the next one, along rows and columns.
 const WATCH: u32 = 4;
 /// Pixels around a break that are looked at exactly.
@@ -98,24 +96,6 @@ pub fn expose(
 /// The part of the work that is done when rays begin.
 pub const BEGIN: f32 = 0.2;
 
-/// The rows of the blocks of a tile: the first pixel of each, and its length. Blocks come one after the other.
-fn block_rows(area: &TileArea) -> impl Iterator<Item = ([u32; 2], u32)> {
-    let TileArea { x: left, y: top, width, height } = *area;
-    (0..height).step_by(BLOCK as usize).flat_map(move |y| {
-        (0..width).step_by(BLOCK as usize).flat_map(move |x| {
-            let length = BLOCK.min(width - x);
-            (y..(y + BLOCK).min(height)).map(move |row| ([left + x, top + row], length))
-        })
-    })
-}
-
-/// The pixels of a tile, block by block: neighbours in the list are neighbours in the picture.
-fn pixels(area: &TileArea) -> Vec<[u32; 2]> {
-    let mut pixels = Vec::with_capacity((area.width * area.height) as usize);
-    block_rows(area).for_each(|([x, y], length)| pixels.extend((x..x + length).map(|column| [column, y])));
-    pixels
-}
-
 /// What some rays through the picture see, how many of them were followed, and how many evaluations they
 /// took. `follows` says by its index whether a ray may meet anything; `trace` has the indices of those that
 /// may, and the rays.
@@ -148,18 +128,9 @@ fn exactly(frame: &Frame<'_>, places: &[[f64; 2]]) -> Result<(Vec<SeenPoint>, u6
     sights(frame, places, |_| true, |_, rays| cast(frame, rays))
 }
 
-/// The smallest part of a tile that holds some pixels of it; at least one.
-fn around(area: &TileArea, pixels: &[[u32; 2]]) -> TileArea {
-    let end = |[x, y]: [u32; 2]| [x + 1, y + 1];
-    let (low, high) = pixels.iter().fold(([u32::MAX; 2], [area.x, area.y]), |(low, high), &pixel| {
-        ([0, 1].map(|axis| low[axis].min(pixel[axis])), [0, 1].map(|axis| high[axis].max(end(pixel)[axis])))
-    });
-    TileArea { x: low[0], y: low[1], width: high[0] - low[0], height: high[1] - low[1] }
-}
-
 /// What a tile sees.
 struct TileSight {
-    /// In the order of [`pixels`]; empty where a tile is bare.
+    /// In the order of [`TileArea::pixels`]; empty where a tile is bare.
     seen: Vec<SeenPoint>,
     is_exact: bool,
     rays: u64,
@@ -240,7 +211,7 @@ impl<'a> PictureSheet<'a> {
     fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
         self.of_tiles((telling, end), Self::look_tile, |sheet, area, sight| {
             let mut rest = &sight.seen[..];
-            for (first, length) in block_rows(area) {
+            for (first, length) in area.block_rows() {
                 let Some((row, after)) = rest.split_at_checked(length as usize) else { break };
                 let index = sheet.index(first);
                 sheet.seen[index..][..row.len()].copy_from_slice(row);
@@ -272,7 +243,7 @@ impl<'a> PictureSheet<'a> {
                 rows.into_iter().any(|y| columns.clone().any(|x| is_break[sheet.index([x, y])]))
             };
             let near: Vec<[u32; 2]> =
-                pixels(area).into_iter().filter(|pixel| !sheet.is_exact[tile] && is_near(pixel)).collect();
+                area.pixels().into_iter().filter(|pixel| !sheet.is_exact[tile] && is_near(pixel)).collect();
             let places: Vec<[f64; 2]> = near.iter().map(|&pixel| sheet.place(pixel, [0, 0], 1)).collect();
             let sight = exactly(sheet.frame, &places)?;
             Ok((near, sight))
@@ -301,7 +272,7 @@ impl<'a> PictureSheet<'a> {
         if self.is_bare(tile) {
             return Ok(TileSight { seen: Vec::new(), is_exact: false, rays: 0, evaluations: 0.0 });
         }
-        let pixels = pixels(area);
+        let pixels = area.pixels();
         let places: Vec<[f64; 2]> = pixels.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
         let Some(raster) = &self.raster else {
             let (seen, rays, evaluations) = exactly(frame, &places)?;
@@ -363,7 +334,8 @@ impl<'a> PictureSheet<'a> {
         let dark = Light { key: 0.0, facing: 0.0, sky: [0.0; 3], open: 0.0 };
         self.lights = of_pixels(self.seen.len(), dark)?;
         let light = |sheet: &Self, _: usize, area: &TileArea| {
-            let lit: Vec<[u32; 2]> = pixels(area)
+            let lit: Vec<[u32; 2]> = area
+                .pixels()
                 .into_iter()
                 .filter(|&pixel| sheet.seen[sheet.index(pixel)].kind != SeenKind::Nothing)
                 .collect();
@@ -401,7 +373,7 @@ impl<'a> PictureSheet<'a> {
                 return Ok((Vec::new(), Vec::new(), 0, 0.0));
             }
             let inner: Vec<[u32; 2]> =
-                pixels(area).into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
+                area.pixels().into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
             let (values, rays, evaluations) = sheet.develop_tile((tile, area), &inner)?;
             Ok((inner, values, rays, evaluations))
         };
@@ -446,7 +418,7 @@ impl<'a> PictureSheet<'a> {
         let leads = !self.is_exact[tile] && self.frame.render.quality == Quality::Draft;
         let (seen, rays, evaluations) = match &self.raster {
             Some(raster) if leads && !edges.is_empty() => {
-                let around = around(area, &edges);
+                let around = area.around(&edges);
                 let meshed = raster.tile(tile, &around, parts);
                 let beside = [around.x - area.x, around.y - area.y].map(|pixels| pixels * parts);
                 let at = |&[x, y]: &[u32; 2]| raster.meeting(&meshed, [x - beside[0], y - beside[1]]);
