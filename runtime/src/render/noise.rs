@@ -43,8 +43,9 @@ impl Sequence {
 /// The second coordinate of a point in the Sobol' sequence, as the 32 bits after the binary point; the first
 /// coordinate is the index with its bits reversed.
 ///
-/// Bit `j` after the point is the sum, modulo 2, of the bits `k` of the index with an odd binomial coefficient
-/// of `k` and `j`. By Lucas' theorem these are the `k` that have all bits of `j`: one step for each bit of `k`.
+/// Bit `j` after the point is the sum, modulo 2, of the bits `k` of the index with an odd binomial
+/// coefficient of `k` and `j`. By Lucas' theorem these are the `k` that have all bits of `j`: one step for
+/// each bit of `k`.
 fn sobol(index: u32) -> u32 {
     let steps = [(1, 0x5555_5555), (2, 0x3333_3333), (4, 0x0f0f_0f0f), (8, 0x00ff_00ff), (16, 0x0000_ffff)];
     steps.iter().fold(index, |bits, (shift, mask)| bits ^ bits >> shift & mask).reverse_bits()
