@@ -111,7 +111,7 @@ struct NearClusters {
 impl NearClusters {
     /// Whether a segment meets one of them.
     #[inline(always)]
-    fn block(&self, hierarchy: &Hierarchy, segment: &RayPart, depth: f32) -> bool {
+    fn blocks(&self, hierarchy: &Hierarchy, segment: &RayPart, depth: f32) -> bool {
         let inverse = inverse(segment.direction);
         for (node, clusters) in self.boxes.iter().zip(self.clusters.chunks(WIDE)) {
             if clusters[0].0 > segment.reach {
@@ -234,7 +234,7 @@ fn any_all(hierarchy: &Hierarchy, segments: &[RayPart], depth: f32, met: &mut [b
         let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
             *met = if is_narrow {
-                near.block(hierarchy, segment, depth)
+                near.blocks(hierarchy, segment, depth)
             } else {
                 hierarchy.blocks(segment, depth)
             };

@@ -127,16 +127,16 @@ impl SeenPoint {
         dot(self.normal.map(f64::from), frame.lights.key).max(0.0) as f32
     }
 
-    /// The value of a ray that sees this in this light.
-    pub fn value(&self, frame: &Frame<'_>, light: &Light) -> Gathered {
+    /// The value of a ray that sees this in this light, which is asked where it matters.
+    pub fn value(&self, frame: &Frame<'_>, light: impl FnOnce() -> Light) -> Gathered {
         let open = |[a, b, c]: Rgb| [a, b, c, 1.0];
         match self.kind {
             SeenKind::Nothing => [0.0; 4],
-            SeenKind::Ground => shadow(frame, &self.spot(frame, [0, 0]), light),
+            SeenKind::Ground => shadow(frame, &self.spot(frame, [0, 0]), &light()),
             SeenKind::Surface => match &frame.render.mode {
                 RenderMode::Shaded => {
                     let hit = self.hit();
-                    open(surface(frame, &hit, *light, frame.looking(hit.position)))
+                    open(surface(frame, &hit, light(), frame.looking(hit.position)))
                 }
                 RenderMode::Normal => open(self.normal.map(|x| 0.5 + 0.5 * x)),
                 RenderMode::Depth => {

@@ -210,12 +210,8 @@ impl<'a> PictureSheet<'a> {
     /// Finds what each pixel sees.
     fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
         self.of_tiles((telling, end), Self::look_tile, |sheet, area, sight| {
-            let mut rest = &sight.seen[..];
-            for (first, length) in area.block_rows() {
-                let Some((row, after)) = rest.split_at_checked(length as usize) else { break };
-                let index = sheet.index(first);
-                sheet.seen[index..][..row.len()].copy_from_slice(row);
-                rest = after;
+            if !sight.seen.is_empty() {
+                sheet.keep(area, &sight.seen);
             }
             let hits = sight.seen.iter().filter(|seen| seen.kind == SeenKind::Surface).count();
             sheet.cost.pixels_hit += hits as u64;
@@ -223,6 +219,16 @@ impl<'a> PictureSheet<'a> {
             sheet.cost.rays.camera += sight.rays;
             sheet.cost.evaluations += sight.evaluations;
         })
+    }
+
+    /// Keeps what all pixels of a tile see.
+    fn keep(&mut self, area: &TileArea, mut seen: &[SeenPoint]) {
+        for (first, length) in area.block_rows() {
+            let (row, rest) = seen.split_at(length as usize);
+            let index = self.index(first);
+            self.seen[index..][..row.len()].copy_from_slice(row);
+            seen = rest;
+        }
     }
 
     /// Looks exactly where what is seen breaks off: the mesh cuts the corners of sharp edges off, so a
@@ -432,16 +438,11 @@ impl<'a> PictureSheet<'a> {
         let values = pixels.iter().zip(is_edge).map(|(&pixel, is_edge)| {
             if !is_edge {
                 let index = self.index(pixel);
-                return match self.seen[index].kind {
-                    SeenKind::Nothing => [0.0; 4],
-                    SeenKind::Surface | SeenKind::Ground => {
-                        self.seen[index].value(self.frame, &self.light_at(index))
-                    }
-                };
+                return self.seen[index].value(self.frame, || self.light_at(index));
             }
             let mut sum = [0.0; 4];
             for seen in seen.next().unwrap_or_default() {
-                let value = seen.value(self.frame, &self.light_near(pixel, seen));
+                let value = seen.value(self.frame, || self.light_near(pixel, seen));
                 sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value * each);
             }
             sum
@@ -461,7 +462,7 @@ impl<'a> PictureSheet<'a> {
     fn light_near(&self, [x, y]: [u32; 2], seen: &SeenPoint) -> Light {
         let mut sum = ([0.0; 5], 0.0);
         let spot = seen.spot(self.frame, [x, y]);
-        if self.lights.is_empty() || seen.kind == SeenKind::Nothing {
+        if self.lights.is_empty() {
             return unshadowed(self.frame, &spot);
         }
         for down in y.saturating_sub(1).max(self.rows[0])..(y + 2).min(self.rows[1]) {
