@@ -109,7 +109,7 @@ pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
 /// Bytes of the frame of one call of machine code. A function that needs more is interpreted.
 pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
 /// Bytes of such a frame on the caller's stack: a fraction of the smallest stacks that threads are given, 64
-/// KiB. A larger frame is in memory that belongs to the kernel.
+/// KiB. A larger frame is in memory that the thread keeps for all kernels.
 pub const MAX_STACK_FRAME_BYTES: usize = 16 << 10;
 /// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;

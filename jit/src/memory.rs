@@ -9,10 +9,10 @@
 //! write away and gives the right to execute.
 //!
 //! A large frame is no part of the caller's stack, which may be a small one: the code runs on memory that
-//! belongs to it ([`FrameMemory`]), and the stack pointer is put back when it returns.
+//! the thread keeps for it ([`FrameMemory`]), and the stack pointer is put back when it returns.
 #![allow(unsafe_code)]
 
-use std::sync::Mutex;
+use std::cell::Cell;
 
 use cranelift_codegen::Context;
 use cranelift_codegen::isa::OwnedTargetIsa;
@@ -61,26 +61,38 @@ pub(crate) struct MachineCode {
     rest: Option<EntryPoint>,
     bytes: usize,
     frame_bytes: usize,
-    /// Memory for large frames of runs that have ended, one for each thread that ran at once.
-    frames: Mutex<Vec<FrameMemory>>,
     /// Never looked at again: kept so that the code stays where it is.
     _pages: Pages,
 }
 
 /// Memory that one run of code takes for its stack.
+#[derive(Default)]
 struct FrameMemory(Vec<u128>);
+
+thread_local! {
+    /// Memory for large frames of runs that have ended on this thread: the frames of all code are in the same
+    /// lines of its cache. At most [`limits::MAX_JIT_FRAME_BYTES`] and a little more.
+    static FRAME: Cell<FrameMemory> = const { Cell::new(FrameMemory(Vec::new())) };
+}
 
 impl FrameMemory {
     /// Bytes besides the frame: the registers that code saves, and what a handler of a signal takes that
     /// comes meanwhile, which the kernel gives all vector registers.
     const BESIDES: usize = 64 << 10;
 
-    /// Memory for a frame of so many bytes, if there is as much.
-    fn new(frame_bytes: usize) -> Option<Self> {
+    /// The memory of this thread, for a frame of so many bytes; `None` if there is not as much.
+    fn take(frame_bytes: usize) -> Option<Self> {
         let words = (frame_bytes + Self::BESIDES).div_ceil(size_of::<u128>());
-        let mut memory = Vec::new();
+        // A thread that ends has none any more.
+        let Self(mut memory) = FRAME.try_with(Cell::take).unwrap_or_default();
         memory.try_reserve_exact(words).ok()?;
         Some(Self(memory))
+    }
+
+    /// Keeps the memory for the next run on this thread.
+    fn keep(self) {
+        // Where nothing is kept any more, it is freed.
+        let _ = FRAME.try_with(|place| place.set(self));
     }
 
     /// Where a stack begins that grows down into it: a multiple of 16.
@@ -114,7 +126,7 @@ impl MachineCode {
         }
         module.finalize_definitions()?;
         let blocks = EntryPoint { address: module.get_finalized_function(function), lanes };
-        Ok(Self { blocks, rest: None, bytes, frame_bytes, frames: Mutex::default(), _pages: pages })
+        Ok(Self { blocks, rest: None, bytes, frame_bytes, _pages: pages })
     }
 
     /// Makes finished bytes executable. The caller has asked the CPU for what they need.
@@ -142,7 +154,6 @@ impl MachineCode {
             rest: rest_function.map(entry),
             bytes: both().map(|blob| blob.bytes.len()).sum(),
             frame_bytes: both().map(|blob| blob.frame_bytes).max().unwrap_or(0),
-            frames: Mutex::default(),
             _pages: pages,
         })
     }
@@ -164,11 +175,8 @@ impl MachineCode {
 
     /// Memory for a frame that is too large for the caller's stack. Where there is none it has to do.
     fn take_frame(&self) -> Option<FrameMemory> {
-        if self.frame_bytes <= limits::MAX_STACK_FRAME_BYTES {
-            return None;
-        }
-        let kept = self.frames.lock().ok().and_then(|mut kept| kept.pop());
-        kept.or_else(|| FrameMemory::new(self.frame_bytes))
+        let is_large = self.frame_bytes > limits::MAX_STACK_FRAME_BYTES;
+        is_large.then(|| FrameMemory::take(self.frame_bytes)).flatten()
     }
 
     /// Where the code is.
@@ -200,9 +208,7 @@ impl MachineCode {
                 *plane = plane.wrapping_byte_add(bytes);
             }
         }
-        if let (Some(frame), Ok(mut kept)) = (frame, self.frames.lock()) {
-            kept.push(frame);
-        }
+        frame.into_iter().for_each(FrameMemory::keep);
     }
 }
 
