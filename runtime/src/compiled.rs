@@ -10,12 +10,13 @@
 //! the same code on the same numbers, and each says what its own rays took.
 
 mod patch;
+mod preparation;
 mod task;
 
 use std::sync::{Arc, OnceLock};
 
 use jbt_ir::{Selection, pass, watch};
-use jbt_lower::{Lowered, Lowering, Workers as _};
+use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::origin::ModelOrigin;
@@ -31,6 +32,7 @@ use crate::prune::program::RangeProgram;
 use crate::span::span;
 
 use patch::PresentPrograms;
+pub(crate) use preparation::Preparation;
 pub use task::Task;
 pub(crate) use task::mesh_needs;
 
@@ -280,28 +282,6 @@ impl Compiled {
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {
         self.0.tree.origin()
-    }
-
-    /// Makes those of some programs that are not there yet, of one lowering of the model, on the rayon pool
-    /// in which this is called.
-    ///
-    /// # Errors
-    /// Those of the first program of the list that cannot be had.
-    pub(crate) fn prepare(&self, needs: &[Need]) -> Result<(), CompileError> {
-        watch::stoppable(|| {
-            let mut missing: Vec<Need> = Vec::with_capacity(needs.len());
-            for &need in needs {
-                if !self.is_made(need) && !missing.contains(&need) {
-                    missing.push(need);
-                }
-            }
-            if !missing.is_empty() {
-                let lowering = Lowering::with(self.tree(), &PoolWorkers);
-                // What went wrong is kept, and told below.
-                PoolWorkers.each(missing.len(), &|index| drop(self.make(missing[index], Some(&lowering))));
-            }
-            needs.iter().try_for_each(|need| self.make(*need, None))
-        })?
     }
 
     /// The program that answers a query.

@@ -3,6 +3,9 @@
 //! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
 //! meaning: they are the case of one thread.
 
+use std::ops::{Deref, DerefMut};
+use std::sync::Mutex;
+
 use jbt_ir::watch::Watches;
 use jbt_lower::Workers;
 
@@ -46,6 +49,57 @@ pub(crate) fn in_pieces<I: IndexedParallelIterator>(
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn in_pieces<I>(items: I) -> I {
     items
+}
+
+/// Rooms that pieces of work need one after the other, such as vectors that each of them fills anew. A room
+/// is made when none is idle, so there are as many as threads. Rayon would make one for each piece: cold
+/// memory, and a good part of the time of a small one.
+pub(crate) struct Rooms<T, F: Fn() -> T> {
+    make: F,
+    idle: Mutex<Vec<T>>,
+}
+
+/// A room of [`Rooms`], until it is dropped.
+pub(crate) struct Room<'a, T> {
+    /// There is one up to the drop.
+    room: Option<T>,
+    idle: &'a Mutex<Vec<T>>,
+}
+
+impl<T, F: Fn() -> T> Rooms<T, F> {
+    /// No room yet.
+    pub(crate) fn new(make: F) -> Self {
+        Self { make, idle: Mutex::new(Vec::new()) }
+    }
+
+    /// A room as whoever had it left it, or a new one.
+    pub(crate) fn take(&self) -> Room<'_, T> {
+        let idle = self.idle.lock().expect("nothing panics here").pop();
+        Room { room: Some(idle.unwrap_or_else(&self.make)), idle: &self.idle }
+    }
+}
+
+impl<T> Deref for Room<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.room.as_ref().expect("up to the drop")
+    }
+}
+
+impl<T> DerefMut for Room<'_, T> {
+    fn deref_mut(&mut self) -> &mut T {
+        self.room.as_mut().expect("up to the drop")
+    }
+}
+
+impl<T> Drop for Room<'_, T> {
+    fn drop(&mut self) {
+        // A lock that is not to be had costs no more than the room.
+        if let (Some(room), Ok(mut idle)) = (self.room.take(), self.idle.lock()) {
+            idle.push(room);
+        }
+    }
 }
 
 #[cfg(not(feature = "parallel"))]

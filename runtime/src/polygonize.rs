@@ -17,7 +17,7 @@ use jbt_ir::watch::{self, Stopped};
 use jbt_model::check::CheckedTree;
 
 use crate::boxes::Box3;
-use crate::compiled::Compiled;
+use crate::compiled::{Compiled, Preparation};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
@@ -362,12 +362,20 @@ impl Polygonize {
             return Err(MeshError::Cancelled.into());
         }
         let start = Instant::now();
-        let kernels = Kernels::new(compiled, self.sharp)?;
-        let compile_time = start.elapsed();
+        let preparation = Preparation::new(compiled);
+        let kernels = Kernels::of_cells(&preparation)?;
+        let mut compile_time = start.elapsed();
+        let prepare = || {
+            let start = Instant::now();
+            kernels.prepare_vertices(&preparation, self.sharp)?;
+            compile_time += start.elapsed();
+            Ok::<_, PolygonizeError>(())
+        };
         let options = self.options(tree);
         let mut counters = MeshCounters::default();
         let meshed = |report: &MeshReport| counters = MeshCounters::new(&kernels, report, &lattice);
-        let (mut mesh, mut report) = mesh::extract_hooked(&kernels, &lattice, &options, hook, meshed)?;
+        let (mut mesh, mut report) =
+            mesh::extract_hooked(&kernels, &lattice, &options, hook, (prepare, meshed))?;
         counters.thin = kernels.counters().into_iter().map(|done| done.primitive_evaluations).sum::<u64>()
             - counters.primitive_evaluations();
         counters.thin_intervals =

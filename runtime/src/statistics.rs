@@ -229,8 +229,9 @@ fn inside(
     }
     let evaluator = compiler.evaluator(leaf, Query::FIELD)?;
     let count = |slab: &mut Slab, &z: &f32| slab.count(&evaluator, xs, ys, z);
+    let rooms = Rooms::new(Slab::default);
     let slabs = scatter(|watches| {
-        let slabs = zs.par_iter().map_init(Slab::default, |slab, z| watches.hold(|| count(slab, z)));
+        let slabs = zs.par_iter().map_init(|| rooms.take(), |slab, z| watches.hold(|| count(slab, z)));
         slabs.collect::<Result<Vec<u64>, _>>()
     })?;
     Ok(slabs.into_iter().sum())

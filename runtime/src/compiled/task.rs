@@ -39,7 +39,7 @@ impl Task {
         let field = regional(Query::FIELD);
         match self {
             Self::Points(query) => vec![Need::Answers(PointScope::Anywhere, query)],
-            Self::Mesh => mesh_needs(false),
+            Self::Mesh => mesh_needs(false).concat(),
             Self::Rays(query) => vec![Need::Ranges, field, regional(query)],
             Self::Slices(query) if query == Query::FIELD => vec![Need::Ranges, field],
             Self::Slices(query) => vec![regional(query), Need::Ranges, field],
@@ -49,12 +49,12 @@ impl Task {
     }
 }
 
-/// The programs of a mesh; with what decides, if it is to have sharp edges. The longest ones come first of
-/// each half, which two threads begin with.
-pub(crate) fn mesh_needs(sharp: bool) -> Vec<Need> {
+/// The programs of a mesh: those that find the cells that the surface crosses, and those of vertices; with
+/// what decides, if it is to have sharp edges.
+pub(crate) fn mesh_needs(sharp: bool) -> [[Need; 2]; 2] {
     let regional = |query| Need::Answers(PointScope::Regions, query);
     let gradient = if sharp { Need::Decisions } else { regional(Query::GRADIENT) };
-    vec![regional(Query::SURFACE), regional(Query::FIELD), gradient, Need::Ranges]
+    [[Need::Ranges, regional(Query::FIELD)], [regional(Query::SURFACE), gradient]]
 }
 
 /// By how many times passes may make a program longer: a logarithm has some 30 ops, its range and that of its

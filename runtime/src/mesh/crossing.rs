@@ -74,8 +74,8 @@ pub(crate) fn find<E: Error + Send + 'static>(
     progress: &Progress<'_>,
 ) -> Result<Crossings, MeshError<E>> {
     let mut found = look(bricks, samples, progress)?;
-    let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
-    Ok(found.numbered(bricks, flipped_faces, progress)?)
+    let flips = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
+    Ok(found.numbered(bricks, &flips, progress)?)
 }
 
 /// The crossing cells of all bricks, before faces are flipped.
@@ -95,25 +95,19 @@ impl UnflippedCells {
     pub(crate) fn numbered(
         self,
         bricks: &Bricks,
-        flipped_faces: u64,
+        flips: &Flips,
         progress: &Progress<'_>,
     ) -> Result<Crossings, Cancelled> {
         span!("number");
         let Self { mut cells, mut counts, starts, suspects: _, cut } = self;
-        // An edit flips faces by its own chains, so their number does not say whether there are any.
-        let is_flipped = |&brick: &usize| {
-            cells[starts[brick]..starts[brick + 1]].iter().any(|cell: &CrossedCell| cell.flips != 0)
-        };
-        let flipped: Vec<usize> =
-            scatter(|_| (0..bricks.len()).into_par_iter().with_min_len(64).filter(is_flipped).collect());
-        for brick in flipped {
+        for &brick in &flips.bricks {
             progress.breathe()?;
             counts[brick] = number_brick(bricks, brick, &mut cells[starts[brick]..starts[brick + 1]]);
         }
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
         let quads = self::starts(counts.iter().map(|count| count.quads));
         let is_open = counts.iter().any(|count| count.is_open);
-        Ok(Crossings { cells, starts, vertices, quads, flipped_faces, cut, is_open })
+        Ok(Crossings { cells, starts, vertices, quads, flipped_faces: flips.faces, cut, is_open })
     }
 
     /// Leaves out cells that are not to be kept, by their bricks.
@@ -139,19 +133,21 @@ pub(crate) fn look<E: Error + Send + 'static>(
     span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
-    let of_group = |signs: &mut Signs, index: usize| {
+    let rooms = Rooms::new(|| (Signs::new(bricks), FoundCells::default()));
+    let of_group = |room: &mut Room<'_, (Signs, FoundCells)>, index: usize| {
         span!("cells of some bricks");
         progress.breathe()?;
-        let mut found = FoundCells::with_room(group, group * bricks.edge.pow(3) / 4);
+        let (signs, found) = &mut **room;
+        found.clear();
         for brick in index * group..bricks.len().min((index + 1) * group) {
             samples.gather_inside(bricks, brick, &mut signs.points);
-            signs.find(bricks, brick, &mut found);
+            signs.find(bricks, brick, found);
         }
-        Ok(found)
+        // As large as it is, while it is in the cache.
+        Ok(found.clone())
     };
-    let found: Result<Vec<FoundCells>, Cancelled> = scatter(|_| {
-        in_pieces((0..groups).into_par_iter()).map_init(|| Signs::new(bricks), of_group).collect()
-    });
+    let found: Result<Vec<FoundCells>, Cancelled> =
+        scatter(|_| in_pieces((0..groups).into_par_iter()).map_init(|| rooms.take(), of_group).collect());
     let found = found?;
     let firsts = starts(found.iter().map(|found| found.cells.len()));
     let (mut suspects, mut cut) = (Vec::new(), Sides::default());
@@ -176,7 +172,7 @@ pub(crate) fn look<E: Error + Send + 'static>(
 }
 
 /// The crossing cells of some bricks.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct FoundCells {
     cells: Vec<CrossedCell>,
     /// The number of cells of each brick, and what else it has.
@@ -188,10 +184,14 @@ struct FoundCells {
 }
 
 impl FoundCells {
-    /// Room for this many bricks and cells.
-    fn with_room(bricks: usize, cells: usize) -> Self {
-        let (cell_counts, counts) = (Vec::with_capacity(bricks), Vec::with_capacity(bricks));
-        Self { cells: Vec::with_capacity(cells), cell_counts, counts, ..Self::default() }
+    /// Forgets them, and keeps their room.
+    fn clear(&mut self) {
+        let Self { cells, cell_counts, counts, suspects, cut } = self;
+        cells.clear();
+        cell_counts.clear();
+        counts.clear();
+        suspects.clear();
+        *cut = Sides::default();
     }
 }
 
@@ -326,15 +326,24 @@ fn join<const WIDTH: usize>(bits: &[u8], step: usize, joined: &mut [u8]) {
     }
 }
 
-/// Flips faces until none is pinched in both of its cells. Returns the number of flips.
+/// Faces that have been flipped.
+#[derive(Default)]
+pub(crate) struct Flips {
+    /// How many.
+    pub(crate) faces: u64,
+    /// The bricks whose cells they belong to, ascending.
+    pub(crate) bricks: Vec<usize>,
+}
+
+/// Flips faces until none is pinched in both of its cells.
 pub(crate) fn flip(
     bricks: &Bricks,
     starts: &[usize],
     cells: &mut [CrossedCell],
     suspects: &[(usize, usize)],
-) -> u64 {
+) -> Flips {
     span!("flip");
-    let mut count = 0;
+    let mut flips = Flips::default();
     for &(brick, upper) in suspects {
         for axis in 0..3 {
             // An earlier flip may have split one of the sheets already.
@@ -349,11 +358,15 @@ pub(crate) fn flip(
             if pinched(cells, lower, 2 * axis + 1) {
                 cells[upper].flips |= 1 << (2 * axis);
                 cells[lower].flips |= 1 << (2 * axis + 1);
-                count += 1;
+                flips.faces += 1;
+                let other = starts.partition_point(|&start| start <= lower) - 1;
+                flips.bricks.extend([brick, other]);
             }
         }
     }
-    count
+    flips.bricks.sort_unstable();
+    flips.bricks.dedup();
+    flips
 }
 
 /// The crossed cell below a crossed cell of a brick along an axis; `None` at the lattice's end, or if the

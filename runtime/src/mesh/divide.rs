@@ -103,12 +103,17 @@ impl BrickLimits {
 /// Then there are fewer ops at each point, or fewer points to keep: 8,192 bricks of 16^3 keep 170 MB.
 const HALVED: [(usize, u64, usize); 2] = [(16, 256, 1 << 13), (8, 200, usize::MAX)];
 
-impl<R> BoxLevel<R> {
+/// Regions whose ops one thread adds: some ten microseconds.
+const AT_ONCE: usize = 256;
+
+impl<R: Sync> BoxLevel<R> {
     /// Whether bricks of this edge are to be halved: they are many, or a point is costly, on average.
     fn wants_halves<F: Field<Region = R>>(&self, field: &F, edge: usize) -> bool {
         let Some((_, most_ops, many)) = HALVED.iter().find(|(of, ..)| *of == edge) else { return false };
-        let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
-        let bricks = self.regions.len();
+        let of_some =
+            |some: &[R]| some.iter().fold(0, |sum: u64, region| sum.saturating_add(field.work(region).ops));
+        let ops: Vec<u64> = scatter(|_| self.regions.par_chunks(AT_ONCE).map(of_some).collect());
+        let (ops, bricks) = (ops.into_iter().fold(0, u64::saturating_add), self.regions.len());
         bricks >= *many || ops >= most_ops.saturating_mul(bricks as u64) && ops > 0
     }
 }

@@ -1,7 +1,8 @@
 //! Doubtful normals: they are compared with the triangles around their vertices.
 //!
 //! ```text
-//! triangles   a quad at a doubtful vertex: the areas of its triangles, while their corners are in the cache
+//! triangles   a quad at a doubtful vertex: the places of its corners among these, and the areas of its
+//!             triangles, while they are in the cache
 //! crease      some of these quads are divided anew: their areas, too
 //! repair      sums of areas at each doubtful vertex, in the order of the triangles
 //! ```
@@ -69,11 +70,11 @@ impl VertexSet {
     }
 
     /// The place of a vertex among those that are in it.
-    fn place(&self, vertex: u32) -> Option<usize> {
+    fn place(&self, vertex: u32) -> Option<u32> {
         let vertex = vertex.wrapping_sub(self.first);
         let word = *self.bits.get(vertex as usize / 64)?;
         let (bit, lower) = (word >> (vertex % 64) & 1, word & ((1 << (vertex % 64)) - 1));
-        (bit == 1).then(|| (self.before[vertex as usize / 64] + lower.count_ones()) as usize)
+        (bit == 1).then(|| self.before[vertex as usize / 64] + lower.count_ones())
     }
 
     /// Some quads by their numbers, if they have a vertex of the set.
@@ -87,22 +88,27 @@ impl VertexSet {
             self.has(p) | self.has(q) | self.has(r) | self.has(s) == 1
         };
         let found = quads.filter(move |&(_, pair)| has_any(pair));
-        found.map(|(quad, pair)| DoubtfulQuad::new(quad, pair, positions))
+        found.map(|(quad, pair)| DoubtfulQuad::new(self, quad, pair, positions))
     }
 }
+
+/// Quads at doubtful vertices, ascending, by groups of bricks.
+pub(crate) type DoubtfulQuads = Vec<Vec<DoubtfulQuad>>;
 
 /// A quad at a doubtful vertex.
 pub(crate) struct DoubtfulQuad {
     /// Its number among all quads.
     quad: usize,
-    triangles: [[u32; 3]; 2],
+    /// For each corner of its triangles, the place among the doubtful vertices.
+    places: [[Option<u32>; 3]; 2],
     areas: [[f64; 3]; 2],
 }
 
 impl DoubtfulQuad {
-    fn new(quad: usize, triangles: [[u32; 3]; 2], positions: &[[f32; 3]]) -> Self {
+    fn new(vertices: &VertexSet, quad: usize, triangles: [[u32; 3]; 2], positions: &[[f32; 3]]) -> Self {
         let area = |triangle: [u32; 3]| area_vector(triangle.map(|vertex| positions[vertex as usize]));
-        Self { quad, triangles, areas: triangles.map(area) }
+        let places = triangles.map(|triangle| triangle.map(|vertex| vertices.place(vertex)));
+        Self { quad, places, areas: triangles.map(area) }
     }
 }
 
@@ -111,7 +117,7 @@ impl DoubtfulQuad {
 pub(crate) fn repair_normals(
     mesh: &mut Mesh,
     vertices: &VertexSet,
-    quads: &mut [DoubtfulQuad],
+    quads: &mut [Vec<DoubtfulQuad>],
     anew: impl Iterator<Item = usize>,
     progress: &Progress<'_>,
 ) -> Result<(), Cancelled> {
@@ -120,19 +126,23 @@ pub(crate) fn repair_normals(
         return Ok(());
     }
     let Mesh { positions, normals, triangles, .. } = mesh;
-    let mut rest = &mut *quads;
-    for quad in anew {
-        let from = rest.partition_point(|one| one.quad < quad);
-        rest = &mut rest[from..];
-        if let Some(one) = rest.first_mut().filter(|one| one.quad == quad) {
-            *one = DoubtfulQuad::new(quad, [triangles[2 * quad], triangles[2 * quad + 1]], positions);
+    let mut anew = anew.peekable();
+    for group in &mut *quads {
+        let mut rest = &mut group[..];
+        while let Some(quad) = anew.next_if(|&quad| rest.last().is_some_and(|last| quad <= last.quad)) {
+            let from = rest.partition_point(|one| one.quad < quad);
+            rest = &mut rest[from..];
+            if let Some(one) = rest.first_mut().filter(|one| one.quad == quad) {
+                let triangles = [triangles[2 * quad], triangles[2 * quad + 1]];
+                *one = DoubtfulQuad::new(vertices, quad, triangles, positions);
+            }
         }
     }
     let mut sums = AreaSums::new(vertices);
-    for some in quads.chunks(QUADS_AT_ONCE) {
+    for some in &*quads {
         progress.breathe()?;
         for one in some {
-            one.triangles.iter().zip(&one.areas).for_each(|(triangle, area)| sums.add(triangle, || *area));
+            one.places.iter().zip(&one.areas).for_each(|(places, area)| sums.add_at(places, *area));
         }
     }
     for (vertex, &sum) in vertices.iter().zip(sums.get()) {
@@ -141,9 +151,6 @@ pub(crate) fn repair_normals(
     }
     Ok(())
 }
-
-/// Quads whose sums take less than a millisecond.
-const QUADS_AT_ONCE: usize = 1 << 13;
 
 /// The sums of the areas of the triangles at some vertices.
 pub(crate) struct AreaSums<'a> {
@@ -161,12 +168,15 @@ impl<'a> AreaSums<'a> {
     /// Adds a triangle. The order counts: sums of the same areas in another order are rounded otherwise.
     pub(crate) fn add(&mut self, triangle: &[u32; 3], area: impl FnOnce() -> [f64; 3]) {
         let places = triangle.map(|vertex| self.vertices.place(vertex));
-        if places == [None; 3] {
-            return;
+        if places != [None; 3] {
+            self.add_at(&places, area());
         }
-        let area = area();
-        for place in places.into_iter().flatten() {
-            self.sums[place].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
+    }
+
+    /// The same at places among the vertices.
+    fn add_at(&mut self, places: &[Option<u32>; 3], area: [f64; 3]) {
+        for &place in places.iter().flatten() {
+            self.sums[place as usize].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
         }
     }
 
@@ -202,7 +212,7 @@ mod tests {
         assert_eq!(set.len(), vertices.len());
         assert!(set.iter().eq(vertices.map(|vertex| 7 + vertex)));
         for vertex in 0..140 {
-            let place = vertices.iter().position(|&other| other == vertex);
+            let place = vertices.iter().position(|&other| other == vertex).map(|place| place as u32);
             assert_eq!(set.place(7 + vertex), place, "{vertex}");
             assert_eq!(set.has(7 + vertex) == 1, place.is_some(), "{vertex}");
         }
@@ -219,7 +229,7 @@ mod tests {
             let mut mesh = Mesh { positions: positions.clone(), ..Mesh::default() };
             mesh.normals = vec![[0.0; 3], [0.0; 3], [0.0; 3], [0.0, 0.0, -1.0]];
             let set = VertexSet::new(0, 4, [3].into_iter());
-            let mut quads: Vec<_> = set.quads([(0, before)].into_iter(), &positions).collect();
+            let mut quads = vec![set.quads([(0, before)].into_iter(), &positions).collect()];
             mesh.triangles = now.to_vec();
             let mut hook = |_: f32| true;
             let progress = Progress::new(&mut hook, 1.0);

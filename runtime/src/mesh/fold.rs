@@ -79,7 +79,8 @@ pub(crate) fn sharp_quads<E: Send>(
         })
     };
     let group = bricks.group();
-    let of_group = |around: &mut Around, index: usize| {
+    let rooms = Rooms::new(|| Around::new(bricks));
+    let of_group = |around: &mut Room<'_, Around>, index: usize| {
         go_on()?;
         let mut found = Vec::new();
         for brick in index * group..bricks.len().min((index + 1) * group) {
@@ -107,7 +108,7 @@ pub(crate) fn sharp_quads<E: Send>(
     };
     let groups = 0..bricks.len().div_ceil(group);
     let found: Vec<Result<Vec<SharpQuad>, E>> =
-        scatter(|_| groups.into_par_iter().map_init(|| Around::new(bricks), of_group).collect());
+        scatter(|_| in_pieces(groups.into_par_iter()).map_init(|| rooms.take(), of_group).collect());
     let mut quads = Vec::new();
     for found in found {
         quads.extend(found?);

@@ -90,12 +90,14 @@ pub(crate) use block::{busy, extract as extract_block};
 pub(crate) use fill::room;
 
 use crate::job::{Hook, Job};
+use crate::parallel::{join, scatter};
 use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
 use divide::{BrickDivision, BrickLimits};
 use doubtful::VertexSet;
 use fold::{SharpQuad, SideCorner};
+use sample::BrickSamples;
 use scope::DivisionScope;
 use vertex::batch::VertexSource;
 use vertex::side::SharpVertex;
@@ -118,32 +120,65 @@ pub fn extract<'a, F: Field>(
     options: &Options,
 ) -> Job<'a, (Mesh, MeshReport), MeshError<F::Error>> {
     let options = options.clone();
-    Job::new(move |hook| extract_hooked(field, lattice, &options, hook, |_| ()))
+    Job::new(move |hook| extract_hooked(field, lattice, &options, hook, (|| Ok(()), |_| ())))
 }
 
-/// As [`extract`], with a hook. The hook gets the report before the search for thin parts, when the mesh is
-/// complete.
-pub(crate) fn extract_hooked<F: Field>(
+/// As [`extract`], with a hook. Whoever is idle while the cells are found prepares what vertices ask of the
+/// field. The last function gets the report before the search for thin parts, when the mesh is complete.
+pub(crate) fn extract_hooked<F: Field, E: From<MeshError<F::Error>> + Send>(
     field: &F,
     lattice: &Lattice,
     options: &Options,
     hook: Hook<'_>,
-    meshed: impl FnOnce(&MeshReport),
-) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
+    (prepare_vertices, meshed): (impl FnOnce() -> Result<(), E> + Send, impl FnOnce(&MeshReport)),
+) -> Result<(Mesh, MeshReport), E> {
     options.check()?;
     let progress = Progress::new(hook, EACH);
-    let division = divide::divide(
-        field,
-        lattice.axes(),
-        (options, DivisionScope::Everything),
-        BrickLimits::WHOLE,
-        &progress,
-    )?;
-    let Polygons { mesh, mut report, crossings, sharp } = polygonize(field, &division, options, &progress)?;
+    let (found, prepared) = scatter(|watches| {
+        let find = || FoundSurface::new(field, lattice, options, &progress);
+        join(|| watches.hold(find), || watches.hold(prepare_vertices))
+    });
+    prepared?;
+    Ok(finish(field, found?, options, &progress, meshed)?)
+}
+
+/// The cells that the surface crosses, and what found them.
+struct FoundSurface<R> {
+    division: BrickDivision<R>,
+    samples: BrickSamples,
+    crossings: Crossings,
+}
+
+impl<R: Send + Sync> FoundSurface<R> {
+    fn new<F: Field<Region = R>>(
+        field: &F,
+        lattice: &Lattice,
+        options: &Options,
+        progress: &Progress<'_>,
+    ) -> Result<Self, MeshError<F::Error>> {
+        let scope = (options, DivisionScope::Everything);
+        let division = divide::divide(field, lattice.axes(), scope, BrickLimits::WHOLE, progress)?;
+        let BrickDivision { bricks, regions, .. } = &division;
+        let mut samples = sample::sample(field, (bricks, regions), (options.iso, None), progress)?;
+        let crossings = crossing::find(bricks, &samples, progress)?;
+        samples.forget_inside();
+        Ok(Self { division, samples, crossings })
+    }
+}
+
+/// The mesh of a surface that has been found.
+fn finish<F: Field>(
+    field: &F,
+    FoundSurface { mut division, samples, crossings }: FoundSurface<F::Region>,
+    options: &Options,
+    progress: &Progress<'_>,
+    meshed: impl FnOnce(&MeshReport),
+) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
+    let Polygons { mesh, mut report, sharp } =
+        polygonize(field, (&mut division, samples, &crossings), options, progress)?;
     meshed(&report);
     if options.thin_parts {
-        report.thin =
-            Some(thin::find(field, &division, (&crossings, &mesh, &sharp), options.iso, &progress)?);
+        report.thin = Some(thin::find(field, &division, (&crossings, &mesh, &sharp), options.iso, progress)?);
     }
     drop((division, crossings, sharp));
     // Otherwise it is known by construction.
@@ -186,24 +221,20 @@ fn creases(mesh: &Mesh, sharp: &[SharpVertex], corners: &[SideCorner]) -> Crease
 struct Polygons {
     mesh: Mesh,
     report: MeshReport,
-    crossings: Crossings,
     sharp: Vec<SharpVertex>,
 }
 
-/// Meshes the bricks of a lattice.
+/// Makes vertices and triangles.
 fn polygonize<F: Field>(
     field: &F,
-    division: &BrickDivision<F::Region>,
+    (division, samples, crossings): (&mut BrickDivision<F::Region>, BrickSamples, &Crossings),
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Polygons, MeshError<F::Error>> {
     let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
-    let mut samples = sample::sample(field, (bricks, regions), (options.iso, None), progress)?;
-    let crossings = crossing::find(bricks, &samples, progress)?;
-    samples.forget_inside();
     let field_evaluations = samples.len() as u64;
     let count = crossings.vertex_count();
-    let source = VertexSource { field, options, bricks, regions, samples: &samples, crossings: &crossings };
+    let source = VertexSource { field, options, bricks, regions, samples: &samples, crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
     drop(samples);
     let mut report = MeshReport {
@@ -226,16 +257,22 @@ fn polygonize<F: Field>(
         thin: None,
     };
     report.cut_sides.add(boxes.cut);
-    let (of, go_on) = ((bricks, &crossings), || progress.breathe());
+    let (of, go_on) = ((&*bricks, crossings), || progress.breathe());
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     let doubtful = VertexSet::new(0, count, done.doubtful.iter().copied());
     let mut around;
-    let room = surface::room(&crossings)?;
+    let room = surface::room(crossings)?;
     (mesh.triangles, around) = surface::triangles(of, room, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
-    let anew = quads.iter().map(SharpQuad::number);
-    doubtful::repair_normals(&mut mesh, &doubtful, &mut around, anew, progress)?;
-    Ok(Polygons { mesh, report, crossings, sharp: done.sharp })
+    // Regions are many small things, and only the search for thin parts has another look at them.
+    let done_with = if options.thin_parts { Vec::new() } else { std::mem::take(regions) };
+    let repair = || {
+        let anew = quads.iter().map(SharpQuad::number);
+        doubtful::repair_normals(&mut mesh, &doubtful, &mut around, anew, progress)
+    };
+    let (repaired, ()) = scatter(|watches| join(|| watches.hold(repair), || drop(done_with)));
+    repaired?;
+    Ok(Polygons { mesh, report, sharp: done.sharp })
 }

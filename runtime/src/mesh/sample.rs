@@ -84,10 +84,10 @@ pub(crate) fn sample<F: Field>(
         }
         progress.add(1.0 / total as f64).map_err(MeshError::from)
     };
+    let rooms = Rooms::new(BrickPoints::default);
     scatter(|watches| {
         let groups = in_pieces(groups.into_par_iter().enumerate());
-        groups
-            .try_for_each_init(BrickPoints::default, |points, group| watches.hold(|| of_group(points, group)))
+        groups.try_for_each_init(|| rooms.take(), |points, group| watches.hold(|| of_group(points, group)))
     })?;
     Ok(BrickSamples { values: values.finish(), inside: inside.finish(), starts, rims })
 }

@@ -10,7 +10,7 @@ use crate::span::span;
 use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, low_turns, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
-use super::doubtful::{DoubtfulQuad, VertexSet};
+use super::doubtful::{DoubtfulQuads, VertexSet};
 use super::fill::{FilledVector, NoMemory, VectorPart};
 
 /// Room for the triangles of all quads.
@@ -24,20 +24,22 @@ pub(super) fn room_of_few(crossings: &Crossings) -> FilledVector<[u32; 3]> {
 }
 
 /// Fills room for the triangles of all quads, in the order of the cells that own them; and the quads at
-/// doubtful vertices, ascending. It asks at times whether to go on.
+/// doubtful vertices. It asks at times whether to go on.
 pub(crate) fn triangles<E: Send>(
     (bricks, crossings): (&Bricks, &Crossings),
     mut triangles: FilledVector<[u32; 3]>,
     (positions, doubtful): (&[[f32; 3]], &VertexSet),
     go_on: impl Fn() -> Result<(), E> + Sync,
-) -> Result<(Vec<[u32; 3]>, Vec<DoubtfulQuad>), E> {
+) -> Result<(Vec<[u32; 3]>, DoubtfulQuads), E> {
     span!("triangles");
     let group = bricks.group();
     let groups = triangles.parts(&crossings.quads, group, 2);
-    let fill = |room: &mut MarkedQuads, (index, mut triangles): (usize, VectorPart<'_, [u32; 3]>)| {
+    let rooms = Rooms::new(|| (Around::new(bricks), Vec::new()));
+    let fill = |room: &mut Room<'_, MarkedQuads>,
+                (index, mut triangles): (usize, VectorPart<'_, [u32; 3]>)| {
         span!("triangles of some bricks");
         go_on()?;
-        let (around, marked) = room;
+        let (around, marked) = &mut **room;
         let (first, mut found) = (index * group, Vec::new());
         for brick in first..bricks.len().min(first + group) {
             let count = crossings.quads[brick + 1] - crossings.quads[brick];
@@ -54,11 +56,11 @@ pub(crate) fn triangles<E: Send>(
         }
         Ok(found)
     };
-    let found: Result<Vec<Vec<DoubtfulQuad>>, E> = scatter(|_| {
+    let found: Result<DoubtfulQuads, E> = scatter(|_| {
         let groups = in_pieces(groups.into_par_iter().enumerate());
-        groups.map_init(|| (Around::new(bricks), Vec::new()), fill).collect()
+        groups.map_init(|| rooms.take(), fill).collect()
     });
-    let found = found?.into_iter().flatten().collect();
+    let found = found?;
     Ok((triangles.finish(), found))
 }
 

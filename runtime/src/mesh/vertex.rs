@@ -67,10 +67,10 @@ pub(crate) fn finish<F: Field>(
         progress.add(1.0 / total as f64)?;
         Ok::<_, MeshError<F::Error>>(done)
     };
+    let rooms = Rooms::new(VertexBatch::default);
     let done = scatter(|watches| {
         let work = in_pieces(targets.into_par_iter().enumerate());
-        let work =
-            work.map_init(VertexBatch::default, |batch, target| watches.hold(|| finish(batch, target)));
+        let work = work.map_init(|| rooms.take(), |batch, target| watches.hold(|| finish(batch, target)));
         work.try_reduce(Done::default, |a, b| Ok(a.and(b)))
     })?;
     let attribute =

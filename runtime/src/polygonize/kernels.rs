@@ -1,9 +1,11 @@
 //! The kernels of a mesh as a field, and the pruner that says what matters where.
 
+use std::sync::OnceLock;
+
 use jbt_model::query::Query;
 use smallvec::SmallVec;
 
-use crate::compiled::{Compiled, Decisions, mesh_needs};
+use crate::compiled::{Compiled, Decisions, Preparation, mesh_needs};
 use crate::counter::Counters;
 use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
@@ -16,6 +18,12 @@ use crate::prune::{PruneCounters, Pruned, Pruner, Region};
 pub(crate) struct Kernels {
     pruner: Pruner,
     field: Evaluator,
+    /// Made by whoever is idle while the cells are found.
+    of_vertices: OnceLock<VertexKernels>,
+}
+
+/// What is asked at vertices.
+struct VertexKernels {
     gradient: Evaluator,
     all: Evaluator,
     /// What tells which operands decide, if edges are wanted and there are any.
@@ -25,16 +33,45 @@ pub(crate) struct Kernels {
 impl Kernels {
     /// Those of a compiled model.
     pub(crate) fn new(compiled: &Compiled, sharp: bool) -> Result<Self, CompileError> {
-        let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
-        compiled.prepare(&mesh_needs(sharp))?;
-        let [field, gradient, all] = queries.map(|query| compiled.regional(query));
+        let preparation = Preparation::new(compiled);
+        let kernels = Self::of_cells(&preparation)?;
+        kernels.prepare_vertices(&preparation, sharp)?;
+        Ok(kernels)
+    }
+
+    /// Those that find the cells that the surface crosses. Nothing else may be asked before
+    /// [`prepare_vertices`](Self::prepare_vertices).
+    pub(super) fn of_cells(preparation: &Preparation<'_>) -> Result<Self, CompileError> {
+        let [of_cells, _] = mesh_needs(false);
+        preparation.prepare(&of_cells)?;
+        let compiled = preparation.compiled();
+        let (pruner, field) = (compiled.pruner()?, compiled.regional(Query::FIELD)?);
+        Ok(Self { pruner, field, of_vertices: OnceLock::new() })
+    }
+
+    /// Makes the others.
+    pub(super) fn prepare_vertices(
+        &self,
+        preparation: &Preparation<'_>,
+        sharp: bool,
+    ) -> Result<(), CompileError> {
+        let [_, of_vertices] = mesh_needs(sharp);
+        preparation.prepare(&of_vertices)?;
+        let compiled = preparation.compiled();
+        let [gradient, all] = [Query::GRADIENT, Query::SURFACE].map(|query| compiled.regional(query));
         let decisions = if sharp { compiled.decisions()? } else { None };
-        Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all?, decisions })
+        let made = VertexKernels { gradient: gradient?, all: all?, decisions };
+        self.of_vertices.get_or_init(|| made);
+        Ok(())
+    }
+
+    fn of_vertices(&self) -> &VertexKernels {
+        self.of_vertices.get().expect("made before there are vertices")
     }
 
     /// Whether the mesh may have edges.
     pub(crate) fn is_sharp(&self) -> bool {
-        self.decisions.is_some()
+        self.of_vertices().decisions.is_some()
     }
 
     /// What runs the field; the others may have fallen back to the interpreter.
@@ -44,7 +81,8 @@ impl Kernels {
 
     /// What the field kernel, the gradient kernel and the full one have done.
     pub(super) fn counters(&self) -> [Counters; 3] {
-        [&self.field, &self.gradient, &self.all].map(Evaluator::counters)
+        let VertexKernels { gradient, all, .. } = self.of_vertices();
+        [&self.field, gradient, all].map(Evaluator::counters)
     }
 
     /// What the pruner has done.
@@ -54,7 +92,8 @@ impl Kernels {
 
     /// Where the field or an attribute of this model may differ from those of an earlier one.
     pub(crate) fn edit(&self, before: &Self) -> Edit {
-        self.all.edit(&self.pruner, (&before.all, &before.pruner))
+        let [now, then] = [self, before].map(|kernels| &kernels.of_vertices().all);
+        now.edit(&self.pruner, (then, &before.pruner))
     }
 
     /// Distances that the field takes at a point, with all rows.
@@ -71,7 +110,8 @@ impl Pruned for Kernels {
 
 impl Field for Kernels {
     fn attributes(&self) -> Vec<(String, usize)> {
-        self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
+        let layout = self.of_vertices().all.layout();
+        layout.attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
     }
 
     fn work(&self, region: &Region) -> FieldWork {
@@ -90,14 +130,15 @@ impl Field for Kernels {
         [gx, gy, gz]: [&mut [f32]; 3],
         signature: &mut [f32],
     ) -> Result<(), EvalError> {
-        match &self.decisions {
+        let VertexKernels { gradient, decisions, .. } = self.of_vertices();
+        match decisions {
             Some(decisions) => {
                 let answers = &mut [field, gx, gy, gz, signature];
                 decisions.eval_region(region.selection(), [x, y, z], answers)
             }
             None => {
                 signature.fill(0.0);
-                self.gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
+                gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
             }
         }
     }
@@ -122,7 +163,7 @@ impl Field for Kernels {
         field: &mut [f32],
         [gx, gy, gz]: [&mut [f32]; 3],
     ) -> Result<(), EvalError> {
-        self.gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
+        self.of_vertices().gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
     }
 
     fn all(
@@ -139,6 +180,6 @@ impl Field for Kernels {
         let mut planes: SmallVec<[&mut [f32]; 8]> = SmallVec::new();
         planes.extend([field, gx, gy, gz]);
         planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
-        self.all.eval_region(region, [x, y, z], &mut planes)
+        self.of_vertices().all.eval_region(region, [x, y, z], &mut planes)
     }
 }

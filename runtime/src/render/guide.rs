@@ -125,7 +125,7 @@ fn meshed(
         thin_parts: false,
         ..mesh::Options::default()
     };
-    match mesh::extract_hooked(&field, &lattice, &options, hook, |_| ()) {
+    match mesh::extract_hooked(&field, &lattice, &options, hook, (|| Ok(()), |_| ())) {
         Ok((mesh, report)) => Ok(Some((mesh, report, field.evaluations()))),
         Err(MeshError::Cancelled) => Err(RenderError::Cancelled),
         Err(MeshError::Field(error)) => Err(error.into()),

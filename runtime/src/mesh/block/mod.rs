@@ -149,9 +149,9 @@ pub(crate) fn extract<F: Field>(
         }
     }
     let Some((samples, mut found)) = found else { return Err(MeshError::Reach { reach }) };
-    let flipped = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
+    let flips = crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects);
     found.keep(&bricks, |brick, cell| is_in(cell_of(&bricks, brick, cell), near));
-    let mut crossings = found.numbered(&bricks, flipped, &progress)?;
+    let mut crossings = found.numbered(&bricks, &flips, &progress)?;
     let source = VertexSource {
         field,
         options: &options,

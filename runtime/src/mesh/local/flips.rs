@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::bricks::{BrickMesh, BrickPlace, beside, linked};
 use crate::mesh::brick::{Bricks, place};
 use crate::mesh::cell::default_sheets;
-use crate::mesh::crossing::{CrossedCell, UnflippedCells, flip};
+use crate::mesh::crossing::{CrossedCell, Flips, UnflippedCells, flip};
 use crate::mesh::lattice::Lattice;
 use crate::morton::morton;
 use crate::touched::Touched;
@@ -31,12 +31,12 @@ type Pinched<'a> = (&'a [CrossedCell], Vec<u32>);
 
 impl FlipChain<'_> {
     /// Flips faces of the new bricks. If faces of other bricks are flipped otherwise than before, it returns
-    /// the places of these bricks, from the first one of the lattice.
-    pub(super) fn flip(&self, found: &mut UnflippedCells) -> Vec<[u32; 3]> {
+    /// the places of these bricks as well, from the first one of the lattice.
+    pub(super) fn flip(&self, found: &mut UnflippedCells) -> (Flips, Vec<[u32; 3]>) {
         let others = self.others(found);
         if others.is_empty() {
-            flip(self.bricks, &found.starts, &mut found.cells, &found.suspects);
-            return Vec::new();
+            let flips = flip(self.bricks, &found.starts, &mut found.cells, &found.suspects);
+            return (flips, Vec::new());
         }
         let number = self.numbers();
         let shift = BrickMesh::shift(self.lattice, self.bricks.edge);
@@ -61,13 +61,16 @@ impl FlipChain<'_> {
             starts.push(cells.len());
         }
         let all = linked(self.bricks.edge, self.bricks.axes.clone(), places);
-        flip(&all, &starts, &mut cells, &suspects);
-        let mut changed = Vec::new();
+        let mut flips = flip(&all, &starts, &mut cells, &suspects);
+        let (mut flipped_new, mut changed) = (Vec::new(), Vec::new());
         for (brick, &place) in all.places.iter().enumerate() {
             let flipped = &cells[starts[brick]..starts[brick + 1]];
             if let Some(&new) = number.get(&place) {
                 let range = found.starts[new]..found.starts[new + 1];
                 found.cells[range].copy_from_slice(flipped);
+                if flips.bricks.binary_search(&brick).is_ok() {
+                    flipped_new.push(new);
+                }
             } else {
                 let kept = &self.mesh.bricks[&self.to_anchor(place)].cells;
                 if kept.iter().zip(flipped).any(|(old, new)| old.flips != new.flips) {
@@ -75,7 +78,8 @@ impl FlipChain<'_> {
                 }
             }
         }
-        changed
+        flips.bricks = flipped_new;
+        (flips, changed)
     }
 
     /// The other bricks that share a chain with a new one, as it is or as it was.

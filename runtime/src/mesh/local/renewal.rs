@@ -60,21 +60,21 @@ impl BrickMesh {
             let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
             let samples = sample::sample(field, (&bricks, &regions), (options.iso, None), &progress)?;
             let mut found = crossing::look(&bricks, &samples, &progress)?;
-            let flipped = match &mut touched {
+            let flips = match &mut touched {
                 None => crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects),
                 Some(touched) => {
                     let chain = FlipChain { mesh: self, lattice, bricks: &bricks, touched };
-                    let others = chain.flip(&mut found);
+                    let (flips, others) = chain.flip(&mut found);
                     if !others.is_empty() {
                         // Rare: their vertices need the field again.
                         others.into_iter().for_each(|place| touched.add(place));
                         continue;
                     }
-                    0
+                    flips
                 }
             };
             let suspects = suspects(bricks.len(), &found.starts, &found.suspects);
-            let crossings = found.numbered(&bricks, flipped, &progress)?;
+            let crossings = found.numbered(&bricks, &flips, &progress)?;
             self.check_limits(&bricks, &crossings, touched.as_ref())?;
             let source = VertexSource {
                 field,
