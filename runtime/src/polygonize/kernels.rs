@@ -31,9 +31,11 @@ struct VertexKernels {
 }
 
 impl Kernels {
-    /// Those of a compiled model.
+    /// All of a compiled model.
     pub(crate) fn new(compiled: &Compiled, sharp: bool) -> Result<Self, CompileError> {
         let preparation = Preparation::new(compiled);
+        // Nobody waits for some of them: all at once.
+        preparation.prepare(&mesh_needs(sharp).concat())?;
         let kernels = Self::of_cells(&preparation)?;
         kernels.prepare_vertices(&preparation, sharp)?;
         Ok(kernels)
