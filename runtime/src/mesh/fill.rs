@@ -11,6 +11,8 @@
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use bytemuck::Pod;
+
 use super::brick::split;
 
 /// The memory for so many bytes is not to be had.
@@ -26,6 +28,18 @@ pub(crate) fn room<T>(length: usize) -> Result<Vec<T>, NoMemory> {
     values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
     ask_for_large_pages(values.spare_capacity_mut());
     Ok(values)
+}
+
+/// The same in the memory of a vector whose values nobody needs any more, if it is large enough, and at most
+/// half too large: its pages are there.
+pub(super) fn room_in<T: Pod, U: Pod>(mut old: Vec<T>, length: usize) -> Result<Vec<U>, NoMemory> {
+    old.clear();
+    let there = old.capacity() * size_of::<T>() / size_of::<U>();
+    let is_right = length > 0 && (length..=length / 2 * 3).contains(&there);
+    match bytemuck::allocation::try_cast_vec(old) {
+        Ok(values) if is_right => Ok(values),
+        Ok(_) | Err(_) => room(length),
+    }
 }
 
 /// A vector of known length, to be filled in parts.
@@ -46,12 +60,17 @@ pub(super) struct VectorPart<'a, T> {
 impl<T: Copy + Default> FilledVector<T> {
     /// Room for this many values.
     pub(super) fn new(length: usize) -> Result<Self, NoMemory> {
-        Ok(Self { values: room(length)?, length, opened: AtomicUsize::new(0) })
+        Ok(Self::in_room(room(length)?, length))
+    }
+
+    /// This many values, in an empty vector with room for as many or more.
+    pub(super) fn in_room(values: Vec<T>, length: usize) -> Self {
+        Self { values, length, opened: AtomicUsize::new(0) }
     }
 
     /// Room for the few values of an edit: without memory it does what vectors do.
     pub(super) fn few(length: usize) -> Self {
-        Self { values: Vec::with_capacity(length), length, opened: AtomicUsize::new(0) }
+        Self::in_room(Vec::with_capacity(length), length)
     }
 
     /// Divides the vector among groups of bricks: the places of brick `b` are from `starts[b]` to
@@ -129,7 +148,7 @@ impl<'a, T: Copy + Default> VectorPart<'a, T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{FilledVector, NoMemory};
+    use super::{FilledVector, NoMemory, room, room_in};
 
     #[test]
     fn parts_make_the_whole() {
@@ -144,6 +163,23 @@ mod tests {
         assert!(FilledVector::<u32>::few(0).finish().is_empty());
         let too_many = FilledVector::<u32>::new(usize::MAX / 4).err();
         assert_eq!(too_many, Some(NoMemory { bytes: usize::MAX - 3 }));
+    }
+
+    #[test]
+    fn memory_is_used_again_if_it_is_enough() {
+        let old = |length| room::<f32>(length).expect("some bytes");
+        let address = |values: &Vec<f32>| values.as_ptr().addr();
+        let values = old(9);
+        let before = address(&values);
+        let mut again = FilledVector::in_room(room_in::<_, [u32; 3]>(values, 2).expect("some bytes"), 2);
+        again.parts(&[0, 2], 1, 1).pop().expect("one part").fill(&[[1; 3], [2; 3]]);
+        let again = again.finish();
+        assert_eq!((again.capacity(), &again[..]), (3, &[[1; 3], [2; 3]][..]));
+        assert_eq!(again.as_ptr().addr(), before);
+        // Too few, too many, none, and no whole number of values.
+        for (length, wanted) in [(12, 5), (12, 2), (12, 0), (13, 4)] {
+            assert_eq!(room_in::<_, [u32; 3]>(old(length), wanted).expect("some bytes").capacity(), wanted);
+        }
     }
 
     #[test]

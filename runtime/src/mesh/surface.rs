@@ -11,11 +11,13 @@ use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, low_turns, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
 use super::doubtful::{DoubtfulQuads, VertexSet};
-use super::fill::{FilledVector, NoMemory, VectorPart};
+use super::fill::{FilledVector, NoMemory, VectorPart, room_in};
+use super::sample::BrickSamples;
 
-/// Room for the triangles of all quads.
-pub(super) fn room(crossings: &Crossings) -> Result<FilledVector<[u32; 3]>, NoMemory> {
-    FilledVector::new(2 * crossings.quad_count())
+/// Room for the triangles of all quads: where the samples were, if that is enough.
+pub(super) fn room(crossings: &Crossings, samples: BrickSamples) -> Result<FilledVector<[u32; 3]>, NoMemory> {
+    let count = 2 * crossings.quad_count();
+    Ok(FilledVector::in_room(room_in(samples.into_room(), count)?, count))
 }
 
 /// The same for the few quads of an edit.

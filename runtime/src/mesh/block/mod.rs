@@ -161,7 +161,6 @@ pub(crate) fn extract<F: Field>(
         crossings: &crossings,
     };
     let (mut mesh, done) = vertex::finish(&source, &progress)?;
-    drop(samples);
     let go_on = || progress.breathe();
     // Quads with all of their corners.
     let first = near[0].map(|low| if low == 0 { 0 } else { low + 1 });
@@ -175,7 +174,7 @@ pub(crate) fn extract<F: Field>(
         done.doubtful.into_iter().filter(|&vertex| vertices.contains(&(vertex as usize))).collect();
     let marked = VertexSet::new(0, mesh.positions.len(), doubtful.iter().copied());
     let mut around;
-    let room = surface::room(&crossings)?;
+    let room = surface::room(&crossings, samples)?;
     (mesh.triangles, around) = surface::triangles(of, room, (&mesh.positions, &marked), go_on)?;
     let quads = fold::sharp_quads(of, &done.sharp, [0; 3], go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
