@@ -100,7 +100,9 @@ pub struct Effort {
 }
 
 /// Fewest runs of ours and of the limit, unless they take longer than [`Effort::endurance`].
-const LEAST_ROUNDS: usize = 3;
+const LEAST_ROUNDS: usize = 5;
+/// Fewest rounds of both of which ratios are taken.
+const LEAST_PAIRS: usize = 3;
 /// More rounds say nothing more.
 const MOST_ROUNDS: usize = 51;
 /// A measurement takes at least this long: what is faster is run several times.
@@ -212,7 +214,7 @@ impl Standing {
         let pairs = self.samples.iter().filter_map(|sample| Some((sample.time, behind(sample)?.time)));
         let mut ratios: Vec<f64> =
             pairs.map(|(ours, theirs)| ours.as_secs_f64() / theirs.as_secs_f64()).collect();
-        if ratios.len() < LEAST_ROUNDS {
+        if ratios.len() < LEAST_PAIRS {
             return self.median.as_secs_f64() / other.median.as_secs_f64();
         }
         ratios.sort_unstable_by(f64::total_cmp);
@@ -297,7 +299,13 @@ impl<'a> Contest<'a> {
             let alone = together == 0 && round < MOST_ROUNDS / 2 && start.elapsed() < effort.budget / 2;
             let over = together >= LEAST_ROUNDS && start.elapsed() >= effort.budget;
             let mut ran = false;
-            for entry in &mut self.entries {
+            // There and back: nobody runs behind the same one each time, in the memory and the caches that
+            // this one has left.
+            let mut order: Vec<_> = self.entries.iter_mut().collect();
+            if round % 2 == 1 {
+                order.reverse();
+            }
+            for entry in order {
                 let takes_part = !alone || entry.contestant.is_measured_well();
                 if takes_part && entry.goes_on(effort, over) {
                     let time = entry.measure();

@@ -19,7 +19,7 @@ impl Options {
         let (budget, patience, endurance) = if self.quick {
             (Duration::from_millis(200), Duration::from_millis(40), Duration::from_secs(5))
         } else {
-            (Duration::from_secs(2), Duration::from_secs(2), Duration::MAX)
+            (Duration::from_secs(4), Duration::from_secs(2), Duration::MAX)
         };
         Effort { budget, patience, endurance }
     }
