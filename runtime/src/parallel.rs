@@ -229,4 +229,26 @@ mod tests {
         assert_eq!(parts.into_inner(), 2);
         assert_eq!(*answers.lock().expect("one at a time"), [Ok(())]);
     }
+
+    #[test]
+    fn rooms_are_as_many_as_are_taken_at_once() {
+        let made = AtomicUsize::new(0);
+        let rooms = Rooms::new(|| {
+            made.fetch_add(1, Ordering::Relaxed);
+            Vec::new()
+        });
+        for piece in 0..3 {
+            // As the last piece left them.
+            let (mut a, mut b) = (rooms.take(), rooms.take());
+            assert_eq!((a.len(), b.len()), (piece, piece));
+            a.push(0);
+            b.push(1);
+        }
+        assert_eq!(made.load(Ordering::Relaxed), 2);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("a pool");
+        let pieces = || (0..1000).into_par_iter().for_each(|piece| rooms.take().push(piece));
+        pool.install(pieces);
+        let kept: usize = rooms.idle.lock().expect("nobody else").iter().map(Vec::len).sum();
+        assert_eq!((kept, made.load(Ordering::Relaxed)), (1006, 2));
+    }
 }
