@@ -28,7 +28,7 @@ struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Less of everything: a minute for all cases. What takes more than 5 s runs once, ours and the limit
+    /// Less of everything: two minutes for all cases. What takes more than 5 s runs once, ours and the limit
     /// too; mesh-4096 without the peers, fidget's other meshes by its fastest formulation alone
     #[arg(long)]
     quick: bool,

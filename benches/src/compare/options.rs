@@ -7,7 +7,7 @@ use super::contest::Effort;
 /// What applies to every case.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Options {
-    /// Less of everything: a minute for all cases.
+    /// Less of everything: two minutes for all cases.
     pub quick: bool,
     /// Threads of meshing cases; the others run on one.
     pub threads: usize,
