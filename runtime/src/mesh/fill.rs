@@ -31,15 +31,13 @@ pub(crate) fn room<T>(length: usize) -> Result<Vec<T>, NoMemory> {
 }
 
 /// The same in the memory of a vector whose values nobody needs any more, if it is large enough, and at most
-/// half too large: its pages are there.
+/// half too large: its pages are there. Otherwise that memory is free before new one is asked for.
 pub(super) fn room_in<T: Pod, U: Pod>(mut old: Vec<T>, length: usize) -> Result<Vec<U>, NoMemory> {
     old.clear();
     let there = old.capacity() * size_of::<T>() / size_of::<U>();
     let is_right = length > 0 && (length..=length / 2 * 3).contains(&there);
-    match bytemuck::allocation::try_cast_vec(old) {
-        Ok(values) if is_right => Ok(values),
-        Ok(_) | Err(_) => room(length),
-    }
+    let again = is_right.then(move || bytemuck::allocation::try_cast_vec(old)).and_then(Result::ok);
+    again.map_or_else(|| room(length), Ok)
 }
 
 /// A vector of known length, to be filled in parts.
@@ -168,9 +166,8 @@ mod tests {
     #[test]
     fn memory_is_used_again_if_it_is_enough() {
         let old = |length| room::<f32>(length).expect("some bytes");
-        let address = |values: &Vec<f32>| values.as_ptr().addr();
         let values = old(9);
-        let before = address(&values);
+        let before = values.as_ptr().addr();
         let mut again = FilledVector::in_room(room_in::<_, [u32; 3]>(values, 2).expect("some bytes"), 2);
         again.parts(&[0, 2], 1, 1).pop().expect("one part").fill(&[[1; 3], [2; 3]]);
         let again = again.finish();

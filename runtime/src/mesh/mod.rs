@@ -236,6 +236,7 @@ fn polygonize<F: Field>(
     let count = crossings.vertex_count();
     let source = VertexSource { field, options, bricks, regions, samples: &samples, crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
+    let room = surface::room(crossings, samples)?;
     let mut report = MeshReport {
         cut_sides: crossings.cut,
         boxes: boxes.examined,
@@ -261,7 +262,6 @@ fn polygonize<F: Field>(
     go_back(&mut mesh, &quads, &done.sharp, go_on)?;
     let doubtful = VertexSet::new(0, count, done.doubtful.iter().copied());
     let mut around;
-    let room = surface::room(crossings, samples)?;
     (mesh.triangles, around) = surface::triangles(of, room, (&mesh.positions, &doubtful), go_on)?;
     let corners = fold::crease(&quads, &done.sharp, &mesh.positions, &mut mesh.triangles, go_on)?;
     mesh.creases = creases(&mesh, &done.sharp, &corners);
