@@ -9,6 +9,7 @@
 //! A target panics if something does not hold. Errors are answers; panics, hangs and differing bits are not.
 //! There is one target for each format of scenes, by the list of formats.
 
+mod commit;
 mod engines;
 mod function;
 mod mesh;
@@ -18,6 +19,7 @@ mod prune;
 mod read;
 mod table;
 
+pub use commit::commit;
 pub use read::{format_word, read};
 pub use table::{FuzzTarget, target, targets};
 

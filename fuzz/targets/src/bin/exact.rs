@@ -24,6 +24,7 @@ use jbt::internals::ir::engine::BoundProgram;
 use jbt::internals::ir::op::{Any, apply};
 use jbt::internals::ir::pass::{PIPELINE, run_pipeline};
 use jbt::internals::ir::{Domain as _, FunctionBuilder, Level, Op, Tables, Type, Value, verify};
+use jbt_targets::commit;
 use jbt_testkit::bits::same;
 use jbt_testkit::ops::{operand, reals};
 
@@ -31,6 +32,10 @@ use jbt_testkit::ops::{operand, reals};
 const BATCH: usize = 1 << 14;
 /// Inputs of one line of a record.
 const CHUNK: u64 = 1 << 28;
+/// What a record says of a part of an op's inputs: how many answers of all engines were compared and how many
+/// differ, the largest error in ULP and where, the time, the commit. The part's name is that of the op, a shift,
+/// the stride, and which inputs.
+const COLUMNS: &str = "part,compared,differing,ulp,at,seconds,commit";
 /// How far shifts go: constants, one function each.
 const SHIFTS: [u32; 8] = [0, 1, 9, 23, 31, 32, 47, u32::MAX];
 
@@ -71,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let record = options.get("record");
     let done = record.and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
-    let begin = Instant::now();
+    let (begin, commit) = (Instant::now(), commit());
     let mut total = Found::default();
     // A slope is one of the whole function, and the reference has none of a value alone.
     let asked = |op: &&Op| !op.is_slope() && (named.is_empty() || named.contains(&op.name()));
@@ -82,12 +87,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 all.add(read(line).ok_or_else(|| format!("the record has a bad line: {line}"))?);
                 continue;
             }
+            let part = Instant::now();
             let found = run();
             all.add(found);
             if let Some(path) = record {
                 let mut file = OpenOptions::new().create(true).append(true).open(path)?;
-                let (worst, at) = found.worst;
-                writeln!(file, "{name},{},{},{worst},{at}", found.compared, found.differing)?;
+                if file.metadata()?.len() == 0 {
+                    writeln!(file, "{COLUMNS}")?;
+                }
+                let (Found { compared, differing, worst: (worst, at) }, seconds) = (found, part.elapsed());
+                let seconds = seconds.as_secs_f64();
+                writeln!(file, "{name},{compared},{differing},{worst},{at},{seconds:.1},{commit}")?;
             }
         }
         let error = if truth(subject.op).is_some() {
@@ -120,7 +130,7 @@ fn options() -> Result<BTreeMap<String, String>, String> {
 /// A line of a record.
 fn read(line: &str) -> Option<Found> {
     let words: Vec<&str> = line.split(',').collect();
-    let [_, compared, differing, worst, at] = words[..] else { return None };
+    let [_, compared, differing, worst, at, _, _] = words[..] else { return None };
     Some(Found {
         compared: compared.parse().ok()?,
         differing: differing.parse().ok()?,

@@ -8,9 +8,10 @@
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::process::Command;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+
+use jbt_targets::commit;
 
 /// Seeds of one line of a record.
 const CHUNK: u64 = 500;
@@ -98,12 +99,6 @@ fn add(rows: &mut Vec<SeedRange>, next: SeedRange) {
         Some(row) => (row.end, row.seconds) = (next.end, row.seconds + next.seconds),
         None => rows.push(next),
     }
-}
-
-/// The commit of the folder that this is run in.
-fn commit() -> String {
-    let said = Command::new("git").args(["rev-parse", "--short", "HEAD"]).output();
-    said.map_or_else(|_| "-".into(), |said| String::from_utf8_lossy(&said.stdout).trim().to_owned())
 }
 
 /// The seeds on all threads.
