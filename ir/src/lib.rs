@@ -18,6 +18,7 @@ pub mod interpret;
 pub mod level;
 pub mod limits;
 pub mod math;
+pub mod memory;
 pub mod op;
 pub mod origin;
 pub mod pass;

@@ -32,6 +32,7 @@ use smallvec::{SmallVec, smallvec};
 use crate::entity::{Entity, Table};
 use crate::function::Function;
 use crate::table::{TableError, Tables};
+use crate::watch;
 
 /// What a selection selects from: the number of rows of each table, and its parent.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -124,8 +125,10 @@ impl Selection {
         tables.check(function)?;
         let mut result = Self::default();
         result.clear(&Arc::new(Extent::new(function, tables)));
-        let active = tables.tables.values().map(|rows| rows.active.len());
-        result.words.reserve_exact(2 * active.sum::<usize>() + 2 * tables.tables.len());
+        // Of each table, the active rows, and a start for each row that may own some.
+        let words = tables.tables.values().map(|rows| rows.active.len() + rows.starts.len()).sum();
+        watch::take_for(&result.words, words);
+        result.words.reserve_exact(words);
         for (table, rows) in tables.tables.iter() {
             let parents = match function.tables[table].parent {
                 None => vec![0],
@@ -258,8 +261,10 @@ impl Selection {
         let starts = self.words.len() - self.len();
         for (part, &count) in parts.iter_mut().zip(&counts) {
             // A start for each row that stays is the most, and all that there are is the most.
+            let words = 1 + count + starts.min(count + self.present.len() + 1);
             part.words.clear();
-            part.words.reserve_exact(1 + count + starts.min(count + self.present.len() + 1));
+            watch::take_for(&part.words, words);
+            part.words.reserve_exact(words);
             part.clear(&self.extent);
             part.present.reserve_exact(self.present.len());
         }
@@ -307,6 +312,7 @@ impl Selection {
                 assert!(inside, "positions are those of one owner");
                 result.words[first - above.len() + next] = word(stay.len());
             }
+            watch::take_for(&result.words, stay.len());
             result.words.extend(stay.iter().map(|&position| active[position as usize]));
             result.end(table);
             kept[table.index()] = stay;

@@ -3,16 +3,18 @@
 //!
 //! ```text
 //! offer(watch, work)     what may be stopped below is stopped by this watch
-//!   stoppable(work)      Err(Stopped) if a look was told to stop; work is half done then, and thrown away
+//!   stoppable(work)      Err(Ended) if a look was told to stop; work is half done then, and thrown away
 //!     look()             in inner loops: costs a decrement, and asks the watch every few milliseconds
+//!     take(bytes)        before memory is asked for: costs a subtraction, and stops if it is not to be had
 //!     Watches::present().hold(task)   a part of the work that another thread does
 //!   go_on()?             outside of compiling: an error, for whoever has errors to answer
 //! ```
 //!
 //! A function in progress has no meaning, so nobody between a loop and [`stoppable`] has anything to answer:
 //! the stack is unwound, as by a panic, but without a message. Whoever is not inside of [`stoppable`] is
-//! never stopped. A thread that waits for others while it is, waits under [no watch](Watches::NONE): it may
-//! do work for somebody else meanwhile, which is neither stopped by this watch nor offered it.
+//! never stopped. [`guarded`] is the same for work that nobody watches: memory alone ends it. A thread that
+//! waits for others while it is stoppable waits under [no watch](Watches::NONE): it may do work for somebody
+//! else meanwhile, which is neither stopped by this watch nor offered it.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -21,6 +23,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::thread::LocalKey;
 use std::time::{Duration, Instant};
+
+use super::memory::{NoMemory, probe};
 
 /// A clock for somebody who looks at it often, and needs the time every few milliseconds: while looks follow
 /// each other quickly, most of them are left out. A look at the real one takes as long as a block of points.
@@ -77,29 +81,52 @@ const ASKED: Duration = Duration::from_millis(5);
 
 thread_local! {
     static OFFERED: RefCell<Option<Watch>> = const { RefCell::new(None) };
-    static ACTIVE: RefCell<Option<Watch>> = const { RefCell::new(None) };
+    static ACTIVE: RefCell<WorkEnd> = const { RefCell::new(WorkEnd::Nothing) };
     /// Looks until the next one at the clock.
     static LEFT: Cell<u32> = const { Cell::new(LOOKS) };
     /// When a watch was last asked.
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
     static CLOCK: SparseClock = const { SparseClock::new() };
+    /// Bytes that were there when this thread last asked, and that nobody has taken since.
+    static FORESEEN: Cell<usize> = const { Cell::new(0) };
 }
 
-type WatchPlace = LocalKey<RefCell<Option<Watch>>>;
+/// Bytes that are asked for at once, for many small parts.
+const PORTION: usize = 2 << 20;
+
+/// What may end the work in progress.
+#[derive(Clone, Default)]
+enum WorkEnd {
+    #[default]
+    Nothing,
+    /// Want of memory.
+    Memory,
+    /// The same, and a watch.
+    Watched(Watch),
+}
 
 /// Work was stopped by its watch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stopped;
 
-/// Does work with a watch in a place. The one before comes back in the end.
-fn with<T>(place: &'static WatchPlace, watch: Option<Watch>, work: impl FnOnce() -> T) -> T {
-    struct WatchBefore(&'static WatchPlace, Option<Watch>);
-    impl Drop for WatchBefore {
+/// Why work ended before it was done.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ended {
+    /// Its watch stopped it.
+    Stopped,
+    /// There was no memory for it.
+    NoMemory(NoMemory),
+}
+
+/// Does work with a value in a place. The one before comes back in the end.
+fn with<V: Default, T>(place: &'static LocalKey<RefCell<V>>, value: V, work: impl FnOnce() -> T) -> T {
+    struct ValueBefore<V: Default + 'static>(&'static LocalKey<RefCell<V>>, V);
+    impl<V: Default> Drop for ValueBefore<V> {
         fn drop(&mut self) {
-            self.0.set(self.1.take());
+            self.0.set(std::mem::take(&mut self.1));
         }
     }
-    let _before = WatchBefore(place, place.replace(watch));
+    let _before = ValueBefore(place, place.replace(value));
     work()
 }
 
@@ -141,12 +168,12 @@ fn is_due() -> bool {
 #[derive(Clone, Default)]
 pub struct Watches {
     offered: Option<Watch>,
-    active: Option<Watch>,
+    active: WorkEnd,
 }
 
 impl Watches {
     /// None: nobody stops the work, and none is offered.
-    pub const NONE: Self = Self { offered: None, active: None };
+    pub const NONE: Self = Self { offered: None, active: WorkEnd::Nothing };
 
     /// Those of the thread.
     #[must_use]
@@ -157,7 +184,7 @@ impl Watches {
     /// Whether there is one that may stop the work in progress.
     #[must_use]
     pub fn may_stop(&self) -> bool {
-        self.active.is_some()
+        matches!(self.active, WorkEnd::Watched(_))
     }
 
     /// Whether what they were offered for is still wanted. Each call asks: it is for whoever calls seldom.
@@ -175,9 +202,9 @@ impl Watches {
 impl fmt::Debug for Watches {
     /// Whether there are any.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { offered, active } = self;
-        let any = |watch: &Option<Watch>| watch.is_some();
-        f.debug_struct("Watches").field("offered", &any(offered)).field("active", &any(active)).finish()
+        let Self { offered, active: _ } = self;
+        let (offered, active) = (offered.is_some(), self.may_stop());
+        f.debug_struct("Watches").field("offered", &offered).field("active", &active).finish()
     }
 }
 
@@ -203,32 +230,85 @@ fn look_closely() {
     if cfg!(panic = "abort") {
         return;
     }
-    let Some(watch) = ACTIVE.with_borrow(Clone::clone) else { return };
+    let WorkEnd::Watched(watch) = ACTIVE.with_borrow(Clone::clone) else { return };
     if is_due() && !watch() {
-        resume_unwind(Box::new(Stopped));
+        resume_unwind(Box::new(Ended::Stopped));
     }
 }
 
-/// Does work that may be stopped, by the watch that was offered.
+/// Before so many bytes are asked for, at once or in parts: stops the work here if they are not to be had.
+#[inline]
+pub fn take(bytes: usize) {
+    match FORESEEN.get().checked_sub(bytes) {
+        Some(left) => FORESEEN.set(left),
+        None => foresee(bytes),
+    }
+}
+
+/// Before so many values are pushed: as [`take`], if the list has to grow for them.
+#[inline]
+pub fn take_for<T>(list: &Vec<T>, more: usize) {
+    if list.capacity() - list.len() < more {
+        take((2 * list.capacity()).max(list.len() + more) * size_of::<T>());
+    }
+}
+
+#[cold]
+fn foresee(bytes: usize) {
+    // Many small parts are asked for together.
+    let portion = bytes.max(PORTION);
+    FORESEEN.set(portion - bytes);
+    let may_end = ACTIVE.with_borrow(|active| !matches!(active, WorkEnd::Nothing));
+    if may_end
+        && !cfg!(panic = "abort")
+        && let Err(error) = probe(portion)
+    {
+        resume_unwind(Box::new(Ended::NoMemory(error)));
+    }
+}
+
+/// Does work that may be stopped, by the watch that was offered or for want of memory.
 ///
 /// # Errors
 /// It was stopped. What it changed is as it was left, so it should own all that it changes.
-pub fn stoppable<T>(work: impl FnOnce() -> T) -> Result<T, Stopped> {
-    let watch = OFFERED.with_borrow(Clone::clone);
-    if watch.as_ref().is_some_and(|watch| !watch()) {
-        return Err(Stopped);
+pub fn stoppable<T>(work: impl FnOnce() -> T) -> Result<T, Ended> {
+    match OFFERED.with_borrow(Clone::clone) {
+        Some(watch) if !watch() => Err(Ended::Stopped),
+        Some(watch) => ending(WorkEnd::Watched(watch), work),
+        None => ending(WorkEnd::Memory, work),
     }
-    let watched = || with(&ACTIVE, watch, work);
-    catch_unwind(AssertUnwindSafe(watched)).map_err(|payload| match is_stop(&*payload) {
-        true => Stopped,
-        false => resume_unwind(payload),
+}
+
+/// Does work that ends where there is no memory for it. Whatever may stop it besides does so as before.
+///
+/// # Errors
+/// There is none. What it changed is as it was left, so it should own all that it changes.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, NoMemory> {
+    let active = match ACTIVE.with_borrow(Clone::clone) {
+        WorkEnd::Nothing => WorkEnd::Memory,
+        around => around,
+    };
+    ending(active, work).map_err(|end| match end {
+        Ended::NoMemory(error) => error,
+        Ended::Stopped => resume_unwind(Box::new(end)),
+    })
+}
+
+/// Does work that a look may end.
+fn ending<T>(active: WorkEnd, work: impl FnOnce() -> T) -> Result<T, Ended> {
+    // What was there before may be gone.
+    FORESEEN.set(0);
+    let watched = || with(&ACTIVE, active, work);
+    catch_unwind(AssertUnwindSafe(watched)).map_err(|payload| match payload.downcast() {
+        Ok(end) => *end,
+        Err(payload) => resume_unwind(payload),
     })
 }
 
 /// Whether a caught panic is the end of stopped work, for whoever catches panics on its way.
 #[must_use]
 pub fn is_stop(payload: &(dyn Any + Send)) -> bool {
-    payload.is::<Stopped>()
+    payload.is::<Ended>()
 }
 
 #[cfg(test)]
@@ -248,9 +328,9 @@ mod tests {
         let asked = Arc::new(AtomicUsize::new(0));
         let counted = Arc::clone(&asked);
         let watch: Watch = Arc::new(move || counted.fetch_add(1, Ordering::Relaxed) < 3);
-        assert_eq!(offer(watch, || stoppable(endless)), Err(Stopped));
+        assert_eq!(offer(watch, || stoppable(endless)), Err(Ended::Stopped));
         assert_eq!(asked.load(Ordering::Relaxed), 4);
-        assert!(ACTIVE.with_borrow(Option::is_none), "the watch is gone");
+        assert!(!Watches::present().may_stop(), "the watch is gone");
         (0..1000).for_each(|_| look());
     }
 
@@ -280,6 +360,28 @@ mod tests {
             slow();
         }
         assert!((0..4).all(|_| slow()), "slow looks are all seen");
+    }
+
+    #[test]
+    fn work_ends_where_there_is_no_memory() {
+        const HUGE: usize = isize::MAX as usize;
+        let no_memory = NoMemory { bytes: HUGE };
+        take(HUGE);
+        let all = || (0..1_000_000).for_each(|_| take(100));
+        assert_eq!(stoppable(all), Ok(()));
+        assert_eq!(stoppable(|| take(HUGE)), Err(Ended::NoMemory(no_memory)));
+        assert_eq!(guarded(|| take(HUGE)), Err(no_memory));
+        assert_eq!(stoppable(|| guarded(|| take(HUGE))), Ok(Err(no_memory)), "the inner one answers");
+        let list = vec![0_u8; 10];
+        assert_eq!(guarded(|| take_for(&list, 1)), Ok(()));
+        assert_eq!(guarded(|| take_for(&list, HUGE - 10)), Err(no_memory));
+    }
+
+    #[test]
+    fn a_stop_goes_through_work_that_is_guarded() {
+        let asked = Arc::new(AtomicUsize::new(0));
+        let watch: Watch = Arc::new(move || asked.fetch_add(1, Ordering::Relaxed) < 3);
+        assert_eq!(offer(watch, || stoppable(|| guarded(endless))), Err(Ended::Stopped));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use jbt_ir::memory::NoMemory;
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::query::{AnswerKind, Planes, Query};
 use jbt_model::word::normalized;
@@ -103,6 +104,20 @@ impl Samples {
         for plane in &mut self.planes {
             plane.resize(points, 0.0);
         }
+    }
+
+    /// The same, if the memory is to be had.
+    ///
+    /// # Errors
+    /// It is not.
+    pub fn try_resize(&mut self, points: usize) -> Result<(), NoMemory> {
+        let bytes = points.saturating_mul(size_of::<f32>());
+        for plane in &mut self.planes {
+            let more = points.saturating_sub(plane.len());
+            plane.try_reserve_exact(more).map_err(|_| NoMemory { bytes })?;
+            plane.resize(points, 0.0);
+        }
+        Ok(())
     }
 
     /// Number of points.

@@ -4,7 +4,8 @@ use std::error::Error;
 
 use jbt_ir::VerifyError;
 use jbt_ir::engine::RunError;
-use jbt_ir::watch::Stopped;
+use jbt_ir::memory::NoMemory;
+use jbt_ir::watch::{Ended, Stopped};
 use jbt_model::diagnostic::{Diagnostics, Severity};
 
 /// What has to change so that an error goes away. Programs map it to what their users know: an exit code, an
@@ -82,6 +83,10 @@ pub enum CompileError {
     /// A token of the caller's stopped it. Whoever asks again begins anew.
     #[error("compiling was cancelled")]
     Cancelled,
+    /// The memory for the rows of the model, or for what is known about them, is not to be had. Whoever asks
+    /// again begins anew.
+    #[error(transparent)]
+    Memory(NoMemory),
     /// The compiler made a program that breaks its own rules: a defect of jbt.
     #[error("the compiler broke its own rules: {}", .0.first().map_or(String::new(), ToString::to_string))]
     Internal(Vec<VerifyError>),
@@ -91,7 +96,7 @@ impl Classified for CompileError {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Model(diagnostics) => diagnostics.kind(),
-            Self::Engine { .. } => ErrorKind::Limit,
+            Self::Engine { .. } | Self::Memory(_) => ErrorKind::Limit,
             Self::Cancelled => ErrorKind::Cancelled,
             Self::Internal(_) => ErrorKind::Internal,
         }
@@ -102,9 +107,12 @@ impl Classified for CompileError {
     }
 }
 
-impl From<Stopped> for CompileError {
-    fn from(_: Stopped) -> Self {
-        Self::Cancelled
+impl From<Ended> for CompileError {
+    fn from(end: Ended) -> Self {
+        match end {
+            Ended::Stopped => Self::Cancelled,
+            Ended::NoMemory(error) => Self::Memory(error),
+        }
     }
 }
 
@@ -137,6 +145,9 @@ pub enum EvalError {
     /// A token of the caller's stopped it. Some of the answers may be written.
     #[error("evaluating was cancelled")]
     Cancelled,
+    /// The memory for the answers, or for what is made before the first of them, is not to be had.
+    #[error(transparent)]
+    Memory(NoMemory),
 }
 
 impl Classified for EvalError {
@@ -144,7 +155,23 @@ impl Classified for EvalError {
         match self {
             Self::Length { .. } | Self::Planes { .. } | Self::Selection | Self::Layout => ErrorKind::Argument,
             Self::Cancelled => ErrorKind::Cancelled,
+            Self::Memory(_) => ErrorKind::Limit,
         }
+    }
+}
+
+impl From<Ended> for EvalError {
+    fn from(end: Ended) -> Self {
+        match end {
+            Ended::Stopped => Self::Cancelled,
+            Ended::NoMemory(error) => Self::Memory(error),
+        }
+    }
+}
+
+impl From<NoMemory> for EvalError {
+    fn from(error: NoMemory) -> Self {
+        Self::Memory(error)
     }
 }
 

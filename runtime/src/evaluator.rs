@@ -261,7 +261,7 @@ impl Evaluator {
         if samples.layout() != self.layout() {
             return Err(EvalError::Layout);
         }
-        samples.resize(points);
+        samples.try_resize(points)?;
         Ok(samples.planes_mut())
     }
 

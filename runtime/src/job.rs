@@ -4,14 +4,15 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use jbt_ir::memory::NoMemory;
 use jbt_ir::watch::{self, Watches};
 
 /// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
 pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
 
 /// The error of a job. Work may be stopped while it compiles, evaluates or does something else: whoever ran
-/// the job gets one answer.
-pub(crate) trait JobError: Sized {
+/// the job gets one answer. Wherever there is no memory for the work, it ends with this error.
+pub(crate) trait JobError: From<NoMemory> {
     /// The error; its `Cancelled` in place of whatever else says that a token has stopped the work.
     fn told(self) -> Self;
 }
@@ -63,7 +64,10 @@ impl<'a, T, E> Job<'a, T, E> {
     where
         E: JobError,
     {
-        let work = move |hook: Hook<'_>| work(hook).map_err(E::told);
+        let work = move |hook: Hook<'_>| match watch::guarded(|| work(hook)) {
+            Ok(made) => made.map_err(E::told),
+            Err(error) => Err(error.into()),
+        };
         Self { work: Box::new(work), watchers: Vec::new(), tokens: Vec::new() }
     }
 

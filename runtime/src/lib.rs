@@ -105,6 +105,10 @@
 //! them are [`Classified`]: an [`ErrorKind`] says what has to change so that the error goes away. All are
 //! `Send + Sync + 'static` and go into `Box<dyn Error>`; none is a panic, whatever a file says.
 //!
+//! Memory that is not to be had is an error as well, wherever its size follows the size of an input, and as
+//! long as some megabytes are left for small parts. Programs that are built with `panic = "abort"` are told
+//! of large vectors alone.
+//!
 //! # What later versions may add
 //!
 //! * Errors, reports and counters are `#[non_exhaustive]`: they get variants and fields.

@@ -199,7 +199,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::{Arc, Mutex};
 
-    use jbt_ir::watch::{self, Stopped};
+    use jbt_ir::watch::{self, Ended};
 
     use super::*;
 
@@ -221,7 +221,7 @@ mod tests {
                         });
                     }
                 });
-                assert_eq!(watch::stoppable(|| ()), Err(Stopped), "the watch is back");
+                assert_eq!(watch::stoppable(|| ()), Err(Ended::Stopped), "the watch is back");
             });
         });
         // A thread does all that it was given before it does what comes later.

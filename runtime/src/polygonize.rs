@@ -13,6 +13,7 @@ mod kernels;
 use jbt_model::diagnostic::Diagnostics;
 use std::time::{Duration, Instant};
 
+use jbt_ir::memory::NoMemory;
 use jbt_ir::watch::{self, Stopped};
 use jbt_model::check::CheckedTree;
 
@@ -224,6 +225,12 @@ pub enum PolygonizeError {
 impl JobError for PolygonizeError {
     fn told(self) -> Self {
         if self.kind() == ErrorKind::Cancelled { MeshError::Cancelled.into() } else { self }
+    }
+}
+
+impl From<NoMemory> for PolygonizeError {
+    fn from(error: NoMemory) -> Self {
+        Self::Mesh(error.into())
     }
 }
 

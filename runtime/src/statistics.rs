@@ -11,6 +11,7 @@
 //! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to
 //! it; an *instance* is a leaf at a position, whatever the number of paths that lead there.
 
+use jbt_ir::memory::NoMemory;
 use jbt_model::diagnostic::Diagnostics;
 use std::collections::BTreeMap;
 
@@ -180,6 +181,9 @@ pub enum SupportsError {
     /// A leaf could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+    /// The memory for the work is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
@@ -197,6 +201,7 @@ impl Classified for SupportsError {
             Self::Compile(error) => error.kind(),
             Self::Lattice(error) => error.kind(),
             Self::Eval(error) => error.kind(),
+            Self::Memory(_) => ErrorKind::Limit,
             Self::Cancelled => ErrorKind::Cancelled,
         }
     }

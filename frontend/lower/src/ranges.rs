@@ -2,7 +2,7 @@
 
 use std::iter::repeat_n;
 
-use jbt_ir::{Entity as _, Function, InstKind, Rule, Store};
+use jbt_ir::{Entity as _, Function, InstKind, Rule, Store, watch};
 
 use super::emit::{self, TableCode};
 use super::instance::{Scene, SpaceId};
@@ -12,6 +12,7 @@ use super::rows;
 use super::shape::{Hoist, Shapes};
 use super::support::Supports;
 use super::workers::Workers;
+use jbt_model::check::NodeId;
 use jbt_model::diagnostic::Diagnostic;
 
 /// The range function of a scene, and what there is to know about its tables.
@@ -61,6 +62,8 @@ fn table_info(
         (_, Some(probe)) => SupportSpace::Probed(probe),
         (_, None) => SupportSpace::Unknown,
     };
+    let count: usize = members.iter().map(|member| member.rows(scene)).sum();
+    watch::take(count * (size_of::<NodeId>() + size_of::<Support>()));
     let (mut nodes, mut found) = (Vec::with_capacity(members.len()), Vec::with_capacity(members.len()));
     for member in members {
         nodes.extend(repeat_n(member.node(scene), member.rows(scene)));

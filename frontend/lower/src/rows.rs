@@ -1,6 +1,6 @@
 //! The numbers of a scene: for every row, what the recipe of its table says. They are rounded once, here.
 
-use jbt_ir::{Entity, Rows, Schema, Store, Tables};
+use jbt_ir::{Entity, Rows, Schema, Store, Tables, watch};
 
 use super::emit::Code;
 use super::instance::Scene;
@@ -36,6 +36,7 @@ pub(super) fn rows(
         }
         let stride = writer.tables[table].stride;
         let members = std::mem::take(&mut writer.members[table]);
+        watch::take(members.len() * stride * size_of::<f32>());
         writer.tables[table].numbers.reserve(members.len() * stride);
         for &member in &members {
             match member.run(scene) {
@@ -83,7 +84,7 @@ impl<'a> Writer<'a> {
 
     /// Writes one row, and hands the rows of the tables under it out.
     fn row(&mut self, table: usize, recipe: &[RowStep], member: Member) {
-        jbt_ir::watch::look();
+        watch::look();
         self.places.begin(member);
         for step in recipe {
             match step {
@@ -118,11 +119,14 @@ impl<'a> Writer<'a> {
     fn own(&mut self, child: usize, owned: impl IntoIterator<Item = Member>) {
         let (rows, members) = (&mut self.tables[child], &mut self.members[child]);
         let owned = owned.into_iter();
+        watch::take_for(members, owned.size_hint().0);
         members.reserve(owned.size_hint().0);
+        watch::take_for(&rows.active, owned.size_hint().0);
         rows.active.reserve(owned.size_hint().0);
         for member in owned {
             let first = self.owned[child];
             let end = first + member.rows(self.scene);
+            watch::take_for(&rows.active, end - first);
             if member.is_asked(self.scene) {
                 // At most limits::MAX_INSTANCES and limits::MAX_PARTICLES.
                 rows.active.extend(first as u32..end as u32);
@@ -151,6 +155,7 @@ impl<'a> Writer<'a> {
         let columns: Vec<_> = columns.collect();
         debug_assert!(columns.iter().all(|(place, _)| *place == RowPlace::ROW), "a point has no parts");
         let slots = recipe.iter().filter(|step| matches!(step, RowStep::Slot(_))).count();
+        watch::take(slots * count * size_of::<u32>() + stride * count * size_of::<f32>());
         rows.nodes.extend(std::iter::repeat_n(member.node(scene).0, slots * count));
         rows.count += count;
         let before = rows.numbers.len();
@@ -165,7 +170,7 @@ impl<'a> Writer<'a> {
             let mut numbers = Vec::with_capacity(stride);
             let mut bad = None;
             for (row, out) in part.chunks_exact_mut(stride).enumerate() {
-                jbt_ir::watch::look();
+                watch::look();
                 let member = Member::particle(run, first / stride + row);
                 numbers.clear();
                 columns.iter().for_each(|(_, push)| push(scene, member, &mut numbers));
@@ -188,6 +193,7 @@ impl<'a> Writer<'a> {
         let (primitive, scale) = (self.scene.primitive(field), self.scene.field(field).scale);
         let mut numbers = Vec::new();
         primitive.skeleton.pieces(scale, primitive.radius, &mut numbers);
+        watch::take_for(&self.tables[table].numbers, numbers.len());
         let pieces = numbers.chunks_exact(self.tables[table].stride);
         self.own(table, (0..pieces.len() as u32).map(|piece| Member::Piece(field, piece)));
         for (piece, numbers) in pieces.enumerate() {

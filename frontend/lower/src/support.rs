@@ -34,6 +34,7 @@
 mod inverse;
 
 use glam::{DAffine3, DVec3};
+use jbt_ir::watch;
 use rustc_hash::FxHashMap as HashMap;
 
 use self::inverse::{HALF_UNIT, Inverse, LinearFacts, absolute};
@@ -113,6 +114,7 @@ impl<'a> Supports<'a> {
             }
             leaf.whole()
         };
+        watch::take(scene.fields.len() * size_of::<Rounded>() + scene.instances.len() * size_of::<Extent>());
         let fields = (0..scene.fields.len()).map(field).collect();
         let mut supports =
             Self { scene, fields, runs, pieces, extents: Vec::with_capacity(scene.instances.len()) };
@@ -157,7 +159,7 @@ impl<'a> Supports<'a> {
     }
 
     fn find(&self, id: InstanceId) -> Extent {
-        jbt_ir::watch::look();
+        watch::look();
         let of = |id: &InstanceId| self.extents[id.0 as usize];
         let all = |children: &[InstanceId]| children.iter().map(of).collect::<Vec<_>>();
         let (instance, iso) = (self.scene.instance(id), self.scene.tree.iso());
@@ -305,6 +307,7 @@ fn supports_of_run(
     let particles = scene.particles(field.node);
     let facts = LinearFacts::new(field.code.map, &field.map);
     let space = sizes[scene.position(field.position).space.0 as usize];
+    watch::take(run.len() * size_of::<Support>());
     let mut supports = vec![Support::EVERYWHERE; run.len()];
     let nothing = Extent { support: Bounds::EMPTY, negative: Bounds::EMPTY };
     let parts = in_parts(workers, &mut supports, ROWS_AT_ONCE, |first, part| {

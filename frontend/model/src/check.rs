@@ -25,7 +25,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::DAffine3;
-use jbt_ir::limits;
+use jbt_ir::{limits, watch};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 #[cfg(doc)]
@@ -80,6 +80,8 @@ use work::check_work;
 /// Nodes for which there is room from the start, if the tree may have as many: nodes are large, and are moved
 /// where a list grows. A larger list is moved by the system, without a copy.
 const ROOM: usize = 1 << 14;
+/// What a node keeps besides its place in the list: names, numbers, the places of its children. An estimate.
+const NODE_BYTES: usize = 256;
 
 impl Model {
     /// The model as a valid tree, or all its errors.
@@ -89,10 +91,10 @@ impl Model {
     /// # Errors
     ///
     /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] errors, one more
-    /// with the number of the remaining errors.
+    /// with the number of the remaining errors. Or that there is no memory for the checked tree.
     pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
-        let checked = self.check_within(limits::MAX_NODES, limits::MAX_INSTANCES);
-        checked.map_err(|list| Diagnostics::new(list, self.source.clone()))
+        let check = || self.check_within(limits::MAX_NODES, limits::MAX_INSTANCES);
+        watch::guarded(check)?.map_err(|list| Diagnostics::new(list, self.source.clone()))
     }
 
     fn check_within(&self, max_nodes: usize, max_instances: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
@@ -154,7 +156,10 @@ impl Model {
         dependence: &mut Dependence,
     ) -> Vec<CheckedNode> {
         let groups = widths(&self.attributes);
-        let mut nodes: Vec<CheckedNode> = Vec::with_capacity(self.root.node().unfolded().min(ROOM));
+        let mut nodes: Vec<CheckedNode> = Vec::new();
+        let room = self.root.node().unfolded().min(ROOM);
+        watch::take_for(&nodes, room);
+        nodes.reserve_exact(room);
         // Of nodes that several parents may have.
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
         // Each entry is a node, and whether its children have been visited.
@@ -181,6 +186,8 @@ impl Model {
                 break;
             }
             let id = NodeId(nodes.len() as u32);
+            watch::take(NODE_BYTES);
+            watch::take_for(&nodes, 1);
             let written = node.written();
             if written.depends_on_parameters(&self.iso)
                 || (self.iso.depends_on_parameters() && written.is_limited_by_iso())

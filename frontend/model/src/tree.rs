@@ -110,6 +110,7 @@ impl Tree {
 
     /// A node of all its parts.
     pub(crate) fn assemble(written: Written, children: Vec<Self>, span: Option<Span>) -> Self {
+        jbt_ir::watch::take(size_of::<Node>() + size_of_val(&*children));
         let depends =
             written.dependent_numbers().next().is_some() || children.iter().any(|child| child.0.depends);
         let unfolded = children.iter().fold(1, |all: u32, child| all.saturating_add(child.0.unfolded));

@@ -178,6 +178,7 @@ mod words;
 use std::borrow::Cow;
 
 use jbt_ir::limits::MAX_SCENE_BYTES;
+use jbt_ir::watch;
 use jbt_model::diagnostic::{Diagnostics, SourceText};
 pub use jbt_model::function::Function;
 use jbt_model::model::Model;
@@ -205,6 +206,12 @@ pub use words::COMMON_FIELDS;
 /// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the
 /// others. Whether the model makes sense, [`check`](jbt_model::check) says.
 pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
+    watch::guarded(|| parse_guarded(text, options))?
+}
+
+fn parse_guarded(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
+    // The model keeps it.
+    watch::take(text.len());
     let text = &*in_normal_form(text);
     let texts = Texts::new(text.len());
     let source = || Some(SourceText::new(SourceText::UNNAMED, text).including(texts.included()));

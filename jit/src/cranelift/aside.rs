@@ -47,7 +47,7 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::time::Instant;
 
-    use jbt_ir::watch::{Stopped, offer, stoppable};
+    use jbt_ir::watch::{Ended, offer, stoppable};
 
     use super::*;
 
@@ -68,7 +68,7 @@ mod tests {
                     let _ = wait.recv();
                 });
             });
-            assert_eq!(stopped, Err(Stopped), "after {:?}", start.elapsed());
+            assert_eq!(stopped, Err(Ended::Stopped), "after {:?}", start.elapsed());
             drop(go_on);
         });
     }

@@ -11,6 +11,8 @@
 //!                           ^ what is left of it           (after Suzuki and Abe 1985, who follow borders in pictures)
 //! ```
 
+use jbt_ir::watch;
+
 use crate::parallel::*;
 use crate::span::span;
 
@@ -56,12 +58,16 @@ pub(super) struct Linked {
     pub(super) loops: Vec<Loop>,
 }
 
+/// What a segment takes while it is linked, besides itself: its places in orders and loops.
+const LINK_BYTES: usize = 96;
+
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
 pub(super) fn link<'a>(pieces: impl Iterator<Item = &'a Segments> + Clone, planes: usize) -> Linked {
     span!("loops");
-    let mut segments: Vec<ContourSegment> =
-        Vec::with_capacity(pieces.clone().map(|piece| piece.list.len()).sum());
+    let count = pieces.clone().map(|piece| piece.list.len()).sum();
+    watch::take(count * (size_of::<ContourSegment>() + planes * size_of::<f32>() + LINK_BYTES));
+    let mut segments: Vec<ContourSegment> = Vec::with_capacity(count);
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
     for piece in pieces {
         segments.extend_from_slice(&piece.list);

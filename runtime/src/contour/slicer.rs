@@ -1,5 +1,6 @@
 //! A model that can be looked at in a plane, again and again.
 
+use jbt_ir::memory::NoMemory;
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostics;
 use jbt_model::query::{AnswerKind, Query};
@@ -122,6 +123,9 @@ pub enum SliceError {
     /// The field could not be evaluated.
     #[error("the field cannot be evaluated: {0}")]
     Eval(#[from] EvalError),
+    /// The memory for the work is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// It was told to stop.
     #[error("the work was cancelled")]
     Cancelled,
@@ -139,9 +143,10 @@ impl Classified for SliceError {
             Self::Empty => ErrorKind::Model,
             Self::Unbounded => ErrorKind::Unbounded,
             Self::Block { .. } | Self::Samples { .. } | Self::Attribute { .. } => ErrorKind::Argument,
-            Self::TooManyPixels { .. } | Self::TooManySquares { .. } | Self::TooManyVertices { .. } => {
-                ErrorKind::Limit
-            }
+            Self::TooManyPixels { .. }
+            | Self::TooManySquares { .. }
+            | Self::TooManyVertices { .. }
+            | Self::Memory(_) => ErrorKind::Limit,
             Self::Rectangle(error) => error.kind(),
             Self::Lattice(error) => error.kind(),
             Self::Compile(error) => error.kind(),

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::parallel::*;
+use jbt_ir::watch;
 use thiserror::Error;
 
 use super::cell::{Cell, Siblings};
@@ -101,7 +102,9 @@ impl<R, D> Subtree<R, D> {
     }
 
     fn append(&mut self, mut other: Self) {
+        watch::take_for(&self.nodes, other.nodes.len());
         self.nodes.append(&mut other.nodes);
+        watch::take_for(&self.regions, other.regions.len());
         self.regions.append(&mut other.regions);
     }
 }
@@ -125,6 +128,10 @@ pub(super) struct DivisionRun<'a, F: Divisible, D> {
 
 /// Levels of boxes whose parts are divided in parallel: more tasks than any machine has threads.
 const PARALLEL_DEPTH: usize = 12;
+
+/// What a box keeps besides its place in the lists, and what is needed to decide it. An estimate: rows of
+/// regions are counted by themselves.
+const BOX_BYTES: usize = 256;
 
 /// Boxes to be decided together: the parts of one.
 struct Parts<D> {
@@ -189,6 +196,7 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
                 let mut below = self.parts(&region, parts)?;
                 // At most MAX_DIVISION_BOXES.
                 node.size = 1 + below.nodes.len() as u32;
+                watch::take((1 + below.nodes.len()) * size_of::<DivisionNode<D>>());
                 let mut subtree =
                     Subtree { nodes: Vec::with_capacity(1 + below.nodes.len()), regions: Vec::new() };
                 subtree.nodes.push(node);
@@ -206,6 +214,7 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
         parts: Parts<D>,
     ) -> Result<Vec<Decided<F::Region, D>>, DivisionFailure<F>> {
         let Parts { boxes, data, depth, old } = parts;
+        watch::take(BOX_BYTES * boxes.len());
         let siblings = Siblings::new(self.field, around, &boxes);
         let mut wanted = [false; MAX_PARTS];
         let mut decisions = Vec::with_capacity(boxes.len());

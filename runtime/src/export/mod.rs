@@ -40,6 +40,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_ir::memory::NoMemory;
 use jbt_ir::watch::{self, Stopped};
 use thiserror::Error;
 
@@ -79,6 +80,9 @@ pub enum ExportError {
     /// A token has stopped it: see [`CancelToken::watches`](crate::CancelToken::watches).
     #[error("writing the mesh was cancelled")]
     Cancelled,
+    /// The memory for what files need besides the mesh is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The format counts in 32 bits, and this is more.
     #[error("a {format} file holds at most {} bytes or triangles, and this one would need {size}", u32::MAX)]
     TooLarge {
@@ -95,7 +99,7 @@ impl Classified for ExportError {
             Self::Extension { .. } | Self::Malformed(_) => ErrorKind::Argument,
             Self::File { .. } | Self::Write(_) => ErrorKind::System,
             Self::Cancelled => ErrorKind::Cancelled,
-            Self::TooLarge { .. } => ErrorKind::Limit,
+            Self::TooLarge { .. } | Self::Memory(_) => ErrorKind::Limit,
         }
     }
 }
@@ -117,7 +121,7 @@ pub fn loses_digits(mesh: &Mesh, format: Format) -> bool {
 ///
 /// # Errors
 /// [`ExportError::Malformed`] and [`ExportError::TooLarge`] before anything is written;
-/// [`ExportError::Write`] later.
+/// [`ExportError::Write`] and [`ExportError::Memory`] later.
 pub fn write(mesh: &Mesh, format: Format, out: &mut impl Write) -> Result<(), ExportError> {
     write_with(mesh, format, &ExportOptions::default(), out)
 }
@@ -133,6 +137,16 @@ pub fn write_with(
     out: &mut impl Write,
 ) -> Result<(), ExportError> {
     check(mesh)?;
+    watch::guarded(|| write_checked(mesh, format, options, out))?
+}
+
+/// Writes a mesh that is well formed.
+fn write_checked(
+    mesh: &Mesh,
+    format: Format,
+    options: &ExportOptions,
+    out: &mut impl Write,
+) -> Result<(), ExportError> {
     let mesh = &*mesh.right_handed();
     watch::go_on()?;
     let split =
@@ -188,6 +202,7 @@ pub fn save_with(
         | ExportError::File { .. }
         | ExportError::Malformed(_)
         | ExportError::Cancelled
+        | ExportError::Memory(_)
         | ExportError::TooLarge { .. }) => other,
     };
     let mut file = AtomicFile::create(path, true).map_err(at_path)?;

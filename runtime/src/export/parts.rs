@@ -99,6 +99,8 @@ pub(super) fn others<'a>(
 
 /// Items that a thread turns into bytes at a time.
 const BLOCK: usize = 1 << 14;
+/// Bytes of an item, about: a list of them grows.
+const ITEM_BYTES: usize = 64;
 /// Blocks whose bytes are in memory at once.
 const BLOCKS: usize = 32;
 /// Bytes that are written between two looks at whether the file is still wanted: archives compress them.
@@ -114,6 +116,7 @@ pub(super) fn write_items(
         span!("bytes");
         watch::go_on()?;
         let mut block = Vec::new();
+        watch::take(BLOCK * ITEM_BYTES);
         (first..count.min(first + BLOCK)).try_for_each(|item| bytes(item, &mut block))?;
         Ok(block)
     };
@@ -134,6 +137,7 @@ pub(super) fn write_items(
 /// Makes something of each item, and looks now and then whether it is still wanted.
 pub(super) fn of_each<T, R>(items: &[T], make: impl Fn(&T) -> R) -> Result<Vec<R>, Stopped> {
     const ITEMS: usize = 1 << 12;
+    watch::take(items.len() * size_of::<R>());
     let mut made = Vec::with_capacity(items.len());
     for part in items.chunks(ITEMS) {
         watch::go_on()?;

@@ -3,6 +3,8 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
+use jbt_ir::watch;
+
 use crate::parallel::*;
 use crate::span::span;
 use thiserror::Error;
@@ -50,6 +52,7 @@ impl DirectedEdges {
     /// Sorts the edges by start vertex, by counting. Fails with the first triangle that names a missing
     /// vertex.
     fn new(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, usize> {
+        watch::take(2 * (vertices + 1) * size_of::<usize>() + 3 * triangles.len() * size_of::<(u32, u32)>());
         let mut starts = vec![0_usize; vertices + 1];
         for (index, triangle) in triangles.iter().enumerate() {
             for &vertex in triangle {
@@ -154,6 +157,7 @@ fn are_paired<E>(
     triangles: &[[u32; 3]],
     go_on: impl Fn() -> Result<(), E>,
 ) -> Result<bool, E> {
+    watch::take(own.len() * size_of::<([u32; SLOTS], [u8; 2])>());
     let mut slots = vec![[NO_END; SLOTS]; own.len()];
     // For each vertex and direction, the slots whose edges have been seen in that direction, a bit each.
     let mut met = vec![[0_u8; 2]; own.len()];

@@ -12,6 +12,8 @@ use std::borrow::Cow;
 use std::convert::Infallible;
 use std::ops::Range;
 
+use jbt_ir::watch;
+
 use super::indexed::{Attribute, Creases, Mesh};
 use super::vertex::side::SharpVertex;
 
@@ -119,6 +121,7 @@ pub(super) fn copied<T: Copy, E>(
     more: usize,
     go_on: &dyn Fn() -> Result<(), E>,
 ) -> Result<Vec<T>, E> {
+    watch::take((items.len() + more) * size_of::<T>());
     let mut copy = Vec::with_capacity(items.len() + more);
     extended(&mut copy, items, |&item| item, go_on)?;
     Ok(copy)

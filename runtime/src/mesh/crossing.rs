@@ -8,6 +8,8 @@
 
 use std::error::Error;
 
+use jbt_ir::watch;
+
 use crate::parallel::*;
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
@@ -124,6 +126,10 @@ impl UnflippedCells {
     }
 }
 
+/// What a brick has besides its cells and vertices: numbers and places in lists, on the way to a mesh. An
+/// estimate.
+const BRICK_BYTES: usize = 256;
+
 /// Finds the crossing cells.
 pub(crate) fn look<E: Error + Send + 'static>(
     bricks: &Bricks,
@@ -131,6 +137,7 @@ pub(crate) fn look<E: Error + Send + 'static>(
     progress: &Progress<'_>,
 ) -> Result<UnflippedCells, MeshError<E>> {
     span!("cross");
+    watch::take(BRICK_BYTES * bricks.len());
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let rooms = Rooms::new(|| (Signs::new(bricks), FoundCells::default()));
@@ -143,11 +150,15 @@ pub(crate) fn look<E: Error + Send + 'static>(
             samples.gather_inside(bricks, brick, &mut signs.points);
             signs.find(bricks, brick, found);
         }
+        // Once as it is, and once in the list of all.
+        watch::take(2 * size_of_val(&*found.cells));
         // As large as it is, while it is in the cache.
         Ok(found.clone())
     };
-    let found: Result<Vec<FoundCells>, Cancelled> =
-        scatter(|_| in_pieces((0..groups).into_par_iter()).map_init(|| rooms.take(), of_group).collect());
+    let found: Result<Vec<FoundCells>, Cancelled> = scatter(|watches| {
+        let groups = in_pieces((0..groups).into_par_iter());
+        groups.map_init(|| rooms.take(), |room, group| watches.hold(|| of_group(room, group))).collect()
+    });
     let found = found?;
     let firsts = starts(found.iter().map(|found| found.cells.len()));
     let (mut suspects, mut cut) = (Vec::new(), Sides::default());

@@ -16,6 +16,7 @@ use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jbt_ir::limits::MAX_BRICKS;
+use jbt_ir::watch;
 
 use crate::parallel::*;
 
@@ -102,6 +103,9 @@ impl BrickLimits {
 /// For bricks of an edge: the mean ops of a point, and the number of bricks, from which on they are halved.
 /// Then there are fewer ops at each point, or fewer points to keep: 8,192 bricks of 16^3 keep 170 MB.
 const HALVED: [(usize, u64, usize); 2] = [(16, 256, 1 << 13), (8, 200, usize::MAX)];
+
+/// What a box takes while it is divided, with its parts: an estimate. Rows are counted by themselves.
+const BOX_BYTES: usize = 1 << 10;
 
 /// Regions whose ops one thread adds: some ten microseconds.
 const AT_ONCE: usize = 256;
@@ -229,6 +233,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         let found = AtomicUsize::new(0);
         let of_group = |(places, regions): (&[[u32; 3]], &[F::Region])| {
             self.progress.ask()?;
+            watch::take(BOX_BYTES * places.len());
             let children = self.children(places, regions, size)?;
             let before = found.fetch_add(children.regions.len(), Ordering::Relaxed);
             self.check(before + children.regions.len())?;
@@ -239,7 +244,9 @@ impl<F: Field> BrickDivider<'_, '_, F> {
             in_pieces(groups).map(|group| watches.hold(|| of_group(group))).collect::<Result<_, _>>()
         })?;
         let mut masks = Vec::with_capacity(level.places.len());
-        let mut regions = Vec::with_capacity(found.into_inner());
+        let found = found.into_inner();
+        watch::take(found * size_of::<(F::Region, [u32; 3])>());
+        let mut regions = Vec::with_capacity(found);
         for mut children in groups {
             self.progress.breathe()?;
             masks.append(&mut children.masks);

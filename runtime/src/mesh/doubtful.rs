@@ -7,6 +7,8 @@
 //! repair      sums of areas at each doubtful vertex, in the order of the triangles
 //! ```
 
+use jbt_ir::watch;
+
 use crate::progress::{Cancelled, Progress};
 use crate::span::span;
 
@@ -162,6 +164,7 @@ pub(crate) struct AreaSums<'a> {
 impl<'a> AreaSums<'a> {
     /// Without triangles.
     pub(crate) fn new(vertices: &'a VertexSet) -> Self {
+        watch::take(vertices.len() * size_of::<[f64; 3]>());
         Self { vertices, sums: vec![[0.0; 3]; vertices.len()] }
     }
 

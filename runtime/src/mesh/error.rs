@@ -4,9 +4,9 @@ use std::any::Any;
 use std::error::Error;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_ir::memory::NoMemory;
 use thiserror::Error;
 
-use super::fill::NoMemory;
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::job::JobError;
 use crate::progress::Cancelled;
@@ -63,11 +63,8 @@ pub enum MeshError<E: Error + 'static> {
         limit: usize,
     },
     /// The memory for all bricks, points of bricks, vertices or triangles is not to be had.
-    #[error("there is no memory for {bytes} bytes of the mesh")]
-    Memory {
-        /// How many bytes were asked for at once.
-        bytes: usize,
-    },
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// Whether faces of a block of cells are flipped depends on cells further away than was looked at: a
     /// chain of ambiguous faces leads there. It has to be asked again with a larger reach.
     #[error("flipped faces depend on cells more than {reach} cells away from the block")]
@@ -90,7 +87,7 @@ impl Classified for MeshError<EvalError> {
                 ErrorKind::Argument
             }
             Self::TooManyBricks { .. }
-            | Self::Memory { .. }
+            | Self::Memory(_)
             | Self::Reach { .. }
             | Self::TooManyVertices { .. } => ErrorKind::Limit,
             Self::Field(error) => error.kind(),
@@ -103,12 +100,6 @@ impl<E: Error + 'static> JobError for MeshError<E> {
     fn told(self) -> Self {
         let is_stop = |error: &E| (error as &dyn Any).downcast_ref() == Some(&EvalError::Cancelled);
         if matches!(&self, Self::Field(error) if is_stop(error)) { Self::Cancelled } else { self }
-    }
-}
-
-impl<E: Error + 'static> From<NoMemory> for MeshError<E> {
-    fn from(NoMemory { bytes }: NoMemory) -> Self {
-        Self::Memory { bytes }
     }
 }
 

@@ -12,20 +12,14 @@ use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bytemuck::Pod;
+use jbt_ir::memory::{self, NoMemory};
+use jbt_ir::watch;
 
 use super::brick::split;
 
-/// The memory for so many bytes is not to be had.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct NoMemory {
-    pub(crate) bytes: usize,
-}
-
 /// An empty vector with room for this many values, in large pages if it fills half of one.
 pub(crate) fn room<T>(length: usize) -> Result<Vec<T>, NoMemory> {
-    let mut values = Vec::new();
-    let bytes = length.saturating_mul(size_of::<T>());
-    values.try_reserve_exact(length).map_err(|_| NoMemory { bytes })?;
+    let mut values = memory::room(length)?;
     ask_for_large_pages(values.spare_capacity_mut());
     Ok(values)
 }
@@ -74,6 +68,8 @@ impl<T: Copy + Default> FilledVector<T> {
     /// Divides the vector among groups of bricks: the places of brick `b` are from `starts[b]` to
     /// `starts[b + 1]`, times `width`.
     pub(super) fn parts(&mut self, starts: &[usize], group: usize, width: usize) -> Vec<VectorPart<'_, T>> {
+        // Callers zip the parts of several vectors.
+        watch::take(4 * starts.len().div_ceil(group) * size_of::<VectorPart<'_, T>>());
         // What earlier parts have counted does not count.
         self.opened = AtomicUsize::new(0);
         let room = &mut self.values.spare_capacity_mut()[..self.length];

@@ -12,6 +12,8 @@
 
 use rustc_hash::FxHashMap;
 
+use jbt_ir::watch;
+
 use crate::parallel::*;
 use crate::span::span;
 
@@ -63,6 +65,7 @@ pub(crate) fn sharp_quads<E: Send>(
     if sharp.is_empty() {
         return Ok(Vec::new());
     }
+    watch::take(crossings.vertex_count() * size_of::<u32>());
     let mut places = vec![0_u32; crossings.vertex_count()];
     (1..).zip(sharp).for_each(|(place, sharp)| places[sharp.vertex as usize] = place);
     let is_there = |brick: usize| {

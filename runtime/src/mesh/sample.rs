@@ -19,6 +19,8 @@ mod class;
 mod points;
 mod window;
 
+use jbt_ir::watch;
+
 use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, starts};
@@ -55,6 +57,8 @@ pub(crate) fn sample<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<BrickSamples, MeshError<F::Error>> {
     span!("sample");
+    // Lists of parts become one list.
+    watch::take(2 * bricks.len() * size_of::<([u16; 27], usize)>());
     let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) = scatter(|_| {
         (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip()
     });

@@ -4,6 +4,8 @@
 //! other three cells may be in bricks below. So each brick sees its cells in a table with one more layer on
 //! each low side, filled from those bricks.
 
+use jbt_ir::memory::NoMemory;
+
 use crate::parallel::*;
 use crate::span::span;
 
@@ -11,7 +13,7 @@ use super::brick::{At, BrickSides, Bricks, NONE, direction, number};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, low_turns, sheets_with_quads};
 use super::crossing::{CrossedCell, Crossings};
 use super::doubtful::{DoubtfulQuads, VertexSet};
-use super::fill::{FilledVector, NoMemory, VectorPart, room_in};
+use super::fill::{FilledVector, VectorPart, room_in};
 use super::sample::BrickSamples;
 
 /// Room for the triangles of all quads: where the samples were, if that is enough.

@@ -20,11 +20,12 @@ use std::ops::Range;
 
 use crate::parallel::*;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_ir::memory::NoMemory;
 use jbt_model::orientation::Orientation;
 
 use super::error::MeshError;
 use super::field::{AttributePlanes, Field};
-use super::fill::{FilledVector, NoMemory, VectorPart};
+use super::fill::{FilledVector, VectorPart};
 use super::indexed::{Attribute, Mesh};
 use super::pull::{LANES, VertexLanes, VertexPlanes, pull_lanes};
 use super::stage::MeshStage;

@@ -42,7 +42,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
-use jbt_ir::{Entity as _, Selection, Tables};
+use jbt_ir::{Entity as _, Selection, Tables, watch};
 use jbt_lower::prune_info::SupportSpace;
 use jbt_model::check::CheckedTree;
 use jbt_model::origin::ModelOrigin;
@@ -145,6 +145,8 @@ pub struct PruneCounters {
 /// The most rows in a region for which ranges of its parts are computed. With more rows the ranges are too
 /// wide to be useful; smaller parts will have better ones.
 const MAX_RANGED_ROWS: usize = 4096;
+/// What a region keeps besides its rows: an estimate.
+const REGION_BYTES: usize = 256;
 
 impl Compiled {
     /// What can be asked about boxes of the model. It has done nothing so far.
@@ -277,6 +279,7 @@ impl Pruner {
         probes: Option<ProbeRanges<'_>>,
         regions: &mut Vec<Region>,
     ) -> Result<(), EvalError> {
+        watch::take(REGION_BYTES * boxes.len());
         for (index, boxes) in boxes.chunks(MAX_PARTS).enumerate() {
             let probes = probes.map(|probes| probes.chunk(index, MAX_PARTS));
             region.narrow_by(boxes, self.masks(region, boxes, probes)?, regions);

@@ -1,5 +1,7 @@
 //! Developing: from the sums of each pixel to colours.
 
+use jbt_ir::watch;
+
 use super::color::{Rgb, ScreenBytes, byte, decode, inferno, viridis};
 use super::settings::{Background, FilmMeaning};
 use crate::parallel::*;
@@ -24,6 +26,7 @@ pub fn develop(
         FilmMeaning::Cost => range(film, |cost| cost > 0.0),
     };
     let curve = (meaning == FilmMeaning::Light).then(ScreenBytes::new);
+    watch::take(size_of::<[u8; 4]>() * film.len());
     let mut rows: Vec<[u8; 4]> = vec![[0; 4]; film.len()];
     let develop_row = |(row, (pixels, bytes)): (usize, (&[Gathered], &mut [[u8; 4]]))| {
         let behind = Behind::new(background.at((row as f32 + 0.5) / height as f32), curve.as_ref());

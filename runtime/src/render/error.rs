@@ -1,6 +1,7 @@
 //! Why there is no picture.
 
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
+use jbt_ir::memory::NoMemory;
 use jbt_model::diagnostic::Diagnostics;
 
 use super::camera::CameraError;
@@ -75,12 +76,9 @@ pub enum RenderError {
         /// Those that there are.
         known: Vec<String>,
     },
-    /// The memory is not to be had.
-    #[error("there is no memory for {pixels} pixels")]
-    Memory {
-        /// Pixels of the picture.
-        pixels: usize,
-    },
+    /// The memory for the work is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The model could not be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
@@ -113,7 +111,7 @@ impl Classified for RenderError {
             | Self::Region { .. }
             | Self::Attribute { .. } => ErrorKind::Argument,
             Self::Unbounded => ErrorKind::Unbounded,
-            Self::TooLarge { .. } | Self::Antialias { .. } | Self::Memory { .. } => ErrorKind::Limit,
+            Self::TooLarge { .. } | Self::Antialias { .. } | Self::Memory(_) => ErrorKind::Limit,
             Self::Camera(error) => error.kind(),
             Self::Compile(error) => error.kind(),
             Self::Bounds(error) => error.kind(),

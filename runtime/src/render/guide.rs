@@ -135,7 +135,7 @@ fn meshed(
             | MeshError::Pulls { .. }
             | MeshError::Width { .. }
             | MeshError::TooManyBricks { .. }
-            | MeshError::Memory { .. }
+            | MeshError::Memory(_)
             | MeshError::Reach { .. }
             | MeshError::TooManyVertices { .. },
         ) => Ok(None),

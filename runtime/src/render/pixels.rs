@@ -5,7 +5,7 @@ use crate::mesh::room;
 
 /// This value for each of some pixels.
 pub fn of_pixels<T: Clone>(pixels: usize, value: T) -> Result<Vec<T>, RenderError> {
-    let mut values = room(pixels).map_err(|_| RenderError::Memory { pixels })?;
+    let mut values = room(pixels)?;
     values.resize(pixels, value);
     Ok(values)
 }

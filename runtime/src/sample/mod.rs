@@ -24,6 +24,8 @@ use crate::parallel::*;
 use jbt_model::diagnostic::Diagnostics;
 
 use jbt_ir::limits::MAX_LATTICE_POINTS;
+use jbt_ir::memory::{self, NoMemory};
+use jbt_ir::watch;
 use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
@@ -80,12 +82,9 @@ pub enum SampleError {
         /// Answers of the query.
         planes: usize,
     },
-    /// The memory is not to be had.
-    #[error("there is no memory for {numbers} numbers")]
-    Memory {
-        /// Points times answers.
-        numbers: usize,
-    },
+    /// The memory for the work is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The lattice could not be divided.
     #[error(transparent)]
     Divide(#[from] DivideError<EvalError>),
@@ -110,7 +109,7 @@ impl Classified for SampleError {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Compile(error) => error.kind(),
-            Self::TooMany { .. } | Self::Memory { .. } => ErrorKind::Limit,
+            Self::TooMany { .. } | Self::Memory(_) => ErrorKind::Limit,
             Self::Divide(error) => error.kind(),
             Self::Cancelled => ErrorKind::Cancelled,
         }
@@ -191,11 +190,9 @@ impl Sampler {
     fn dense_hooked(&self, lattice: &Lattice, hook: Hook<'_>) -> Result<Vec<Vec<f32>>, SampleError> {
         let count = self.check_size(lattice)?;
         let planes = self.layout().names().len();
-        let mut dense = Vec::new();
+        let mut dense = Vec::with_capacity(planes);
         for _ in 0..planes {
-            let mut plane = Vec::new();
-            let failed = |_| SampleError::Memory { numbers: count * planes };
-            plane.try_reserve_exact(count).map_err(failed)?;
+            let mut plane = memory::room(count)?;
             plane.resize(count, 0.0);
             dense.push(plane);
         }
@@ -295,6 +292,8 @@ impl Sampler {
         let [xs, ys, zs] =
             if self.is_constant(region) { [&xs[..1], &ys[..1], &zs[..1]] } else { [xs, ys, zs] };
         let count = xs.len() * ys.len() * zs.len();
+        let numbers = count * (3 + self.layout().names().len());
+        watch::take(numbers * size_of::<f32>());
         let (mut x, mut y, mut z) =
             (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
         for &at_z in zs {

@@ -17,6 +17,7 @@ use crate::parallel::*;
 use jbt_model::diagnostic::Diagnostics;
 
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
+use jbt_ir::memory::NoMemory;
 
 use super::crossings::crossed;
 use super::cut::{self, LinearField};
@@ -152,6 +153,9 @@ pub enum MeasureError {
     /// The gradient, for normals, could not be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// The memory for the work is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// It was told to stop.
     #[error("measuring was cancelled")]
     Cancelled,
@@ -168,7 +172,7 @@ impl Classified for MeasureError {
         match self {
             Self::Region(error) => error.kind(),
             Self::Cell { .. } => ErrorKind::Argument,
-            Self::Resolution { .. } => ErrorKind::Limit,
+            Self::Resolution { .. } | Self::Memory(_) => ErrorKind::Limit,
             Self::Divide(error) => error.kind(),
             Self::Eval(error) => error.kind(),
             Self::Compile(error) => error.kind(),

@@ -2,6 +2,7 @@
 //! bindings.
 
 use glam::{DAffine3, DVec3};
+use jbt_ir::watch;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::asked;
@@ -27,6 +28,9 @@ impl<'a> Scene<'a> {
         Finder::new(tree).run()
     }
 }
+
+/// What is known of an instance besides its place in the lists: its names, lists of its own. An estimate.
+const INSTANCE_BYTES: usize = 128;
 
 /// A node and what its ancestors say about it.
 type Key = (NodeId, PositionId, BindingsId);
@@ -68,6 +72,9 @@ pub(super) struct Finder<'a> {
 
 impl<'a> Finder<'a> {
     pub(super) fn new(tree: &'a CheckedTree) -> Self {
+        // As much as there is room for below.
+        let each = size_of::<Instance>() + size_of::<LeafField>() / 2 + size_of::<Position>() / 4;
+        watch::take(tree.nodes().len() * each);
         let once: Vec<bool> = tree.uses().iter().map(|&uses| uses == 1).collect();
         let scene = Scene {
             tree,
@@ -107,7 +114,7 @@ impl<'a> Finder<'a> {
         let root = self.resolve((self.scene.tree.root(), world, self.unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
-            jbt_ir::watch::look();
+            watch::look();
             if let Some(id) = done.take() {
                 frame.children.push(id);
             }
@@ -229,6 +236,10 @@ impl<'a> Finder<'a> {
     /// Makes an instance of a node whose children are done, and remembers it if it can be met again.
     fn leave(&mut self, frame: Frame) -> InstanceId {
         let key = frame.key;
+        watch::take(INSTANCE_BYTES);
+        watch::take_for(&self.scene.instances, 1);
+        watch::take_for(&self.scene.fields, 1);
+        watch::take_for(&self.scene.positions, 1);
         let id = self.close(frame);
         if !self.once[key.0.0 as usize] {
             self.known.insert(key, id);

@@ -7,6 +7,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use jbt_ir::limits::MAX_SCENE_BYTES;
+use jbt_ir::memory::NoMemory;
 
 use super::{Diagnostic, Note, Source, Span, escape};
 
@@ -142,6 +143,12 @@ pub struct Diagnostics {
     list: Vec<Diagnostic>,
     source: Option<SourceText>,
     cause: Option<Arc<io::Error>>,
+}
+
+impl From<NoMemory> for Diagnostics {
+    fn from(error: NoMemory) -> Self {
+        vec![Diagnostic::limit(None, error.to_string())].into()
+    }
 }
 
 impl Diagnostics {

@@ -10,7 +10,11 @@ use super::imported::{Imported, ReadModel};
 use super::particles::{MAX_PARTICLE_BYTES, ParticleOptions, ParticleUse};
 use crate::Options;
 use jbt_ir::limits::MAX_SCENE_BYTES;
+use jbt_ir::watch;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics};
+
+/// Bytes of memory that a byte of a file takes at least, while it is read: what it says, and lists that grow.
+const TAKEN: usize = 2;
 
 /// What a format is: the row that its module states.
 #[derive(Clone, Copy, Debug)]
@@ -248,7 +252,13 @@ impl SceneFormat {
                 "no particles for options to be about".to_owned()
             }
             _ if let Some(what) = options.particles.useless(row.uses) => what.to_owned(),
-            _ => return row.read(bytes, options).map_err(|error| error.named(name)),
+            _ => {
+                let read = || {
+                    watch::take(TAKEN * bytes.len());
+                    row.read(bytes, options)
+                };
+                return watch::guarded(read)?.map_err(|error| error.named(name));
+            }
         };
         let message = format!("{name} is {}: it has {refused}", row.text);
         Err(vec![Diagnostic::error(None, message)].into())

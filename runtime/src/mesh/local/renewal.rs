@@ -1,6 +1,7 @@
 //! Bricks are made anew where the field has changed.
 
 use jbt_ir::limits::MAX_BRICKS;
+use jbt_ir::watch;
 
 use super::bricks::BrickMesh;
 use super::flips::FlipChain;
@@ -86,9 +87,25 @@ impl BrickMesh {
             };
             let (mesh, done) = vertex::finish(&source, &progress)?;
             progress.finish()?;
+            self.take_for_commit(&mesh, &crossings);
             let (lattice, doubtful, sharp) = (lattice.clone(), done.doubtful, done.sharp);
             return Ok(Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, sharp, touched });
         }
+    }
+
+    /// Stops the work if there is no memory for new bricks among the old ones: a commit is not stopped halfway.
+    fn take_for_commit(&self, mesh: &Mesh, crossings: &Crossings) {
+        let widths: usize = mesh.attributes.iter().map(|attribute| attribute.width).sum();
+        let a_vertex = size_of::<[f32; 3]>() * 2 + widths * size_of::<f32>();
+        let a_triangle = size_of::<[u32; 3]>();
+        let (vertices, triangles) = (mesh.positions.len(), 2 * crossings.quad_count());
+        let mut bytes = vertices * a_vertex + triangles * a_triangle + size_of_val(&*crossings.cells);
+        let buffers = &self.buffers;
+        if self.vertex_slots.end() + vertices > buffers.positions.capacity() {
+            bytes += buffers.positions.len() * a_vertex + buffers.triangles.len() * a_triangle;
+        }
+        // Buffers grow to twice what is in them, and slots are larger than what is in them.
+        watch::take(3 * bytes);
     }
 
     /// Whether the numbers of bricks and vertices stay within their limits.

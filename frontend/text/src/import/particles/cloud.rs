@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use jbt_ir::watch;
+
 use super::anisotropic::{FluidKernel, kernels};
 use super::options::{ParticleForm, ParticleOptions};
 use crate::import::imported::ReadModel;
@@ -148,6 +150,8 @@ impl Cloud {
         if count > MOST_COMPARED {
             return;
         }
+        // A table has a power of two of places, of which it fills seven of eight, and a byte more for each.
+        watch::take((count * 8 / 7).next_power_of_two() * (size_of::<[u64; 3]>() + 1));
         let mut seen = HashSet::with_capacity(count);
         let places = (0..count).map(|index| positions.triple(index).map(|x| (x + 0.0).to_bits()));
         let repeated = places.filter(|place| !seen.insert(*place)).count();

@@ -8,6 +8,7 @@ use super::scan::{TextLine, TextLines, TextWord, fault};
 use crate::import::format::SceneFormatRow;
 use crate::import::imported::ReadModel;
 use jbt_ir::limits::MAX_TABLE_COLUMNS;
+use jbt_ir::watch;
 use jbt_model::diagnostic::Diagnostic;
 
 pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow::of_particles(
@@ -130,14 +131,14 @@ impl PointTable {
 
     /// One more row: a number for each column, whatever for those that nobody reads.
     pub(super) fn push(&mut self, row: &[f64]) {
-        self.positions.extend(self.axes.map(|place| row[place]));
-        self.radii.extend(self.radius.map(|place| row[place]));
-        self.strengths.extend(self.strength.map(|place| row[place]));
+        append(&mut self.positions, self.axes.map(|place| row[place]));
+        self.radius.into_iter().for_each(|place| append(&mut self.radii, [row[place]]));
+        self.strength.into_iter().for_each(|place| append(&mut self.strengths, [row[place]]));
         if let Some(rgb) = self.rgb {
-            self.colors.extend(rgb.map(|place| row[place] as f32));
+            append(&mut self.colors, rgb.map(|place| row[place] as f32));
         }
         for (values, (place, _)) in self.values.iter_mut().zip(&self.others) {
-            values.push(row[*place]);
+            append(values, [row[*place]]);
         }
     }
 
@@ -151,6 +152,12 @@ impl PointTable {
         cloud.values = others.map(|((_, name), values)| (name, 1, values.into())).collect();
         cloud
     }
+}
+
+/// Appends numbers, if there is memory for them.
+fn append<T, const N: usize>(list: &mut Vec<T>, numbers: [T; N]) {
+    watch::take_for(list, N);
+    list.extend(numbers);
 }
 
 /// A cloud of `x y z` or of `x y z r g b`.

@@ -35,6 +35,8 @@ impl<'a> Iterator for TextLines<'a> {
         let rest = self.bytes.get(start..).filter(|rest| !rest.is_empty())?;
         let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
         let length = end.unwrap_or(rest.len());
+        // A number of two characters becomes eight bytes.
+        jbt_ir::watch::take(4 * length);
         let is_pair = rest[length..].starts_with(b"\r\n");
         self.at = start + length + if is_pair { 2 } else { usize::from(end.is_some()) };
         Some(TextLine { text: &rest[..length], start })
