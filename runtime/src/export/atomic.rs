@@ -235,7 +235,8 @@ fn begin(path: &Path, folder: &Path) -> io::Result<BegunFile> {
             return Ok((file, None));
         }
         if let Some((file, name)) = nameless::create_with_name(path) {
-            return Ok((file, Some(TempPath::try_from_path(name)?)));
+            let temporary = TempPath::try_from_path(&name).inspect_err(|_| drop(fs::remove_file(&name)))?;
+            return Ok((file, Some(temporary)));
         }
     }
     #[cfg(not(target_os = "linux"))]

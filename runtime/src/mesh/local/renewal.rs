@@ -93,7 +93,8 @@ impl BrickMesh {
         }
     }
 
-    /// Stops the work if there is no memory for new bricks among the old ones: a commit is not stopped halfway.
+    /// Stops the work if there is no memory for new bricks among the old ones: a commit is not stopped
+    /// halfway.
     fn take_for_commit(&self, mesh: &Mesh, crossings: &Crossings) {
         let widths: usize = mesh.attributes.iter().map(|attribute| attribute.width).sum();
         let a_vertex = size_of::<[f32; 3]>() * 2 + widths * size_of::<f32>();
