@@ -363,6 +363,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "there an allocation that fails ends the run")]
     fn work_ends_where_there_is_no_memory() {
         const HUGE: usize = isize::MAX as usize;
         let no_memory = NoMemory { bytes: HUGE };

@@ -33,8 +33,8 @@ const BATCH: usize = 1 << 14;
 /// Inputs of one line of a record.
 const CHUNK: u64 = 1 << 28;
 /// What a record says of a part of an op's inputs: how many answers of all engines were compared and how many
-/// differ, the largest error in ULP and where, the time, the commit. The part's name is that of the op, a shift,
-/// the stride, and which inputs.
+/// differ, the largest error in ULP and where, the time, the commit. The part's name is that of the op, a
+/// shift, the stride, and which inputs.
 const COLUMNS: &str = "part,compared,differing,ulp,at,seconds,commit";
 /// How far shifts go: constants, one function each.
 const SHIFTS: [u32; 8] = [0, 1, 9, 23, 31, 32, 47, u32::MAX];
