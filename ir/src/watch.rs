@@ -255,15 +255,15 @@ pub fn take_for<T>(list: &Vec<T>, more: usize) {
 
 #[cold]
 fn foresee(bytes: usize) {
+    FORESEEN.set(0);
+    if cfg!(panic = "abort") || ACTIVE.with_borrow(|active| matches!(active, WorkEnd::Nothing)) {
+        return;
+    }
     // Many small parts are asked for together.
     let portion = bytes.max(PORTION);
-    FORESEEN.set(portion - bytes);
-    let may_end = ACTIVE.with_borrow(|active| !matches!(active, WorkEnd::Nothing));
-    if may_end
-        && !cfg!(panic = "abort")
-        && let Err(error) = probe(portion)
-    {
-        resume_unwind(Box::new(Ended::NoMemory(error)));
+    match probe(portion) {
+        Ok(()) => FORESEEN.set(portion - bytes),
+        Err(error) => resume_unwind(Box::new(Ended::NoMemory(error))),
     }
 }
 

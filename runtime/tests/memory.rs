@@ -41,11 +41,16 @@ const ANSWER: &str = "an answer";
 const NO_MEMORY: &str = "no memory:";
 
 /// Whose error it was; what it said.
-type Done = Result<(), (ErrorKind, String)>;
+type Done<T = ()> = Result<T, (ErrorKind, String)>;
 
 /// The error of a result, classified.
+fn classified<T, E: Classified>(result: Result<T, E>) -> Done<T> {
+    result.map_err(|error| (error.kind(), error.to_string()))
+}
+
+/// The same of work whose result nobody needs.
 fn told<T, E: Classified>(result: Result<T, E>) -> Done {
-    result.map(drop).map_err(|error| (error.kind(), error.to_string()))
+    classified(result).map(drop)
 }
 
 /// Something to do at a size, with the inputs made.
@@ -139,10 +144,6 @@ fn work_of_few_bytes() {
     small().expect("the process can do what is small");
 }
 
-fn compiler() -> Compiler {
-    Compiler::new()
-}
-
 fn ball() -> CheckedTree {
     tree("jbt 1 color (1 0 0) { point { surface_radius 1 } }")
 }
@@ -153,7 +154,7 @@ fn settings(cells: usize) -> Polygonize {
 
 fn mesh(small: bool) -> Work {
     let (tree, settings) = (ball(), settings(if small { 16 } else { 1_000 }));
-    Box::new(move || told(settings.mesh(&compiler(), &tree).run()))
+    Box::new(move || told(settings.mesh(&Compiler::new(), &tree).run()))
 }
 
 fn cloud(count: usize) -> CheckedTree {
@@ -165,24 +166,24 @@ fn cloud(count: usize) -> CheckedTree {
 
 fn mesh_of_particles(small: bool) -> Work {
     let (tree, settings) = (cloud(if small { 10 } else { 100_000 }), settings(if small { 16 } else { 120 }));
-    Box::new(move || told(settings.mesh(&compiler(), &tree).run()))
+    Box::new(move || told(settings.mesh(&Compiler::new(), &tree).run()))
 }
 
 fn rows(small: bool) -> Work {
     let tree = cloud(if small { 10 } else { 1_000_000 });
-    Box::new(move || told(Sampler::new(&compiler(), &tree, Query::ALL)))
+    Box::new(move || told(Sampler::new(&Compiler::new(), &tree, Query::ALL)))
 }
 
 fn points(small: bool) -> Work {
     // The small ones are enough for several threads: the pool is there before memory is short.
     let count = if small { 100_000 } else { 3_000_000 };
     let points: Points = (0..count).map(|index| [index as f32 / count as f32, 0.0, 0.0]).collect();
-    let evaluator = compiler().evaluator(&ball(), Query::ALL).expect("it compiles");
+    let evaluator = Compiler::new().evaluator(&ball(), Query::ALL).expect("it compiles");
     Box::new(move || told(evaluator.par_eval(&points, &mut evaluator.samples())))
 }
 
 fn sampler() -> Sampler {
-    Sampler::new(&compiler(), &ball(), Query::ALL).expect("it compiles")
+    Sampler::new(&Compiler::new(), &ball(), Query::ALL).expect("it compiles")
 }
 
 fn lattice(points: usize) -> Lattice {
@@ -203,13 +204,13 @@ fn picture(small: bool) -> Work {
     let tree = ball();
     let render =
         Render { size: [if small { 16 } else { 1_500 }; 2], quality: Quality::Draft, ..Render::default() };
-    Box::new(move || told(render.picture(&compiler(), &tree).run()))
+    Box::new(move || told(render.picture(&Compiler::new(), &tree).run()))
 }
 
 fn contour(small: bool) -> Work {
     let tree = cloud(if small { 10 } else { 30_000 });
     let slicer =
-        Slicer::of(&compiler().compile(&tree), &Plane::default(), Query::FIELD).expect("it compiles");
+        Slicer::of(&Compiler::new().compile(&tree), &Plane::default(), Query::FIELD).expect("it compiles");
     Box::new(move || {
         let rectangle = slicer.rectangle().expect("it is bounded");
         let fineness = Fineness::Resolution(if small { 16 } else { 16_000 });
@@ -218,7 +219,7 @@ fn contour(small: bool) -> Work {
 }
 
 fn measures(small: bool) -> Work {
-    let solid = Solid::new(&compiler(), &cloud(if small { 10 } else { 20_000 })).expect("it compiles");
+    let solid = Solid::new(&Compiler::new(), &cloud(if small { 10 } else { 20_000 })).expect("it compiles");
     let fineness = Fineness::Resolution(if small { 8 } else { 128 });
     let settings = Measure { fineness, ..Measure::default() };
     Box::new(move || told(solid.measure(&settings).run()))
@@ -226,13 +227,14 @@ fn measures(small: bool) -> Work {
 
 fn live(small: bool) -> Work {
     let (tree, settings) = (cloud(if small { 10 } else { 30_000 }), settings(if small { 16 } else { 300 }));
-    Box::new(move || told(LiveMesh::of(&compiler().compile(&tree), settings).run()))
+    Box::new(move || told(LiveMesh::of(&Compiler::new().compile(&tree), settings).run()))
 }
 
 fn files(small: bool) -> Work {
     let settings = settings(if small { 8 } else { 200 });
-    let mesh =
-        settings.mesh(&compiler(), &tree("jbt 1 color (1 0 0) { box { half (1 1 1) radius 0.1 } }")).run();
+    let mesh = settings
+        .mesh(&Compiler::new(), &tree("jbt 1 color (1 0 0) { box { half (1 1 1) radius 0.1 } }"))
+        .run();
     let mesh = mesh.expect("a mesh").mesh;
     Box::new(move || Format::ALL.into_iter().try_for_each(|format| told(write(&mesh, format, &mut sink()))))
 }
@@ -243,9 +245,8 @@ fn nodes(small: bool) -> Work {
     let text = format!("jbt 1\nsum {{\n{points}}}");
     Box::new(move || {
         let model = text::parse(text.as_bytes(), &text::Options::default());
-        let tree =
-            model.and_then(|model| model.check()).map_err(|error| (error.kind(), error.to_string()))?;
-        told(Sampler::new(&compiler(), &tree, Query::ALL))
+        let tree = classified(model.and_then(|model| model.check()))?;
+        told(Sampler::new(&Compiler::new(), &tree, Query::ALL))
     })
 }
 
@@ -256,8 +257,7 @@ fn table(small: bool) -> Work {
     let particles = ParticleOptions { radius: Some(0.5), ..ParticleOptions::default() };
     let options = text::Options { particles, ..text::Options::default() };
     Box::new(move || {
-        let read = SceneFormat::Csv.read("table.csv", file.as_bytes(), &options);
-        let read = read.map_err(|error| (error.kind(), error.to_string()))?;
+        let read = classified(SceneFormat::Csv.read("table.csv", file.as_bytes(), &options))?;
         told(read.model.check())
     })
 }

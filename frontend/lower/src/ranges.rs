@@ -62,6 +62,7 @@ fn table_info(
         (_, Some(probe)) => SupportSpace::Probed(probe),
         (_, None) => SupportSpace::Unknown,
     };
+    // Supports are copied into a list of their exact length.
     let count: usize = members.iter().map(|member| member.rows(scene)).sum();
     watch::take(count * (size_of::<NodeId>() + size_of::<Support>()));
     let (mut nodes, mut found) = (Vec::with_capacity(members.len()), Vec::with_capacity(members.len()));

@@ -156,10 +156,9 @@ impl Model {
         dependence: &mut Dependence,
     ) -> Vec<CheckedNode> {
         let groups = widths(&self.attributes);
-        let mut nodes: Vec<CheckedNode> = Vec::new();
         let room = self.root.node().unfolded().min(ROOM);
-        watch::take_for(&nodes, room);
-        nodes.reserve_exact(room);
+        watch::take(room * size_of::<CheckedNode>());
+        let mut nodes: Vec<CheckedNode> = Vec::with_capacity(room);
         // Of nodes that several parents may have.
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
         // Each entry is a node, and whether its children have been visited.

@@ -6,9 +6,11 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicU64;
 
+use jbt_ir::watch::Watches;
+
 use super::cells::Segments;
 use super::grid::{ContourLattice, Grid, Rectangle};
-use super::{Contour, ContourPiece, Contouring, Detail, SliceError, Slicer};
+use super::{Contour, ContourPiece, Contouring, Detail, SliceError, Slicer, link};
 use crate::job::Hook;
 use crate::progress::{Progress, SOME};
 use crate::touched::Touched;
@@ -64,6 +66,9 @@ impl KeptContour {
         let progress = Progress::new(hook, SOME);
         let pieces = work.run(detail, &progress)?.pieces;
         progress.finish()?;
+        // A commit is not stopped halfway.
+        let segments = self.untouched(touched.as_ref()).chain(pieces.iter().map(|(_, piece)| piece));
+        link::take_for_links(segments.map(|piece| piece.list.len()).sum(), slicer.planes());
         Ok(ContourRenewal { touched, pieces, outline: slicer.outline(&self.grid)? })
     }
 
@@ -84,6 +89,11 @@ impl KeptContour {
         renewal: ContourRenewal,
         slicer: &Slicer,
     ) -> (Contour, Vec<[[f32; 2]; 2]>) {
+        // Nothing can fail any more.
+        Watches::NONE.hold(|| self.commit_held(renewal, slicer))
+    }
+
+    fn commit_held(&mut self, renewal: ContourRenewal, slicer: &Slicer) -> (Contour, Vec<[[f32; 2]; 2]>) {
         let ContourRenewal { touched, pieces, outline } = renewal;
         let mut old = match &touched {
             None => std::mem::take(&mut self.pieces),

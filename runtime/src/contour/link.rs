@@ -61,12 +61,17 @@ pub(super) struct Linked {
 /// What a segment takes while it is linked, besides itself: its places in orders and loops.
 const LINK_BYTES: usize = 96;
 
+/// Stops the work if there is no memory to link so many segments, with so many planes of attributes.
+pub(super) fn take_for_links(segments: usize, planes: usize) {
+    watch::take(segments * (size_of::<ContourSegment>() + planes * size_of::<f32>() + LINK_BYTES));
+}
+
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
 pub(super) fn link<'a>(pieces: impl Iterator<Item = &'a Segments> + Clone, planes: usize) -> Linked {
     span!("loops");
     let count = pieces.clone().map(|piece| piece.list.len()).sum();
-    watch::take(count * (size_of::<ContourSegment>() + planes * size_of::<f32>() + LINK_BYTES));
+    take_for_links(count, planes);
     let mut segments: Vec<ContourSegment> = Vec::with_capacity(count);
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
     for piece in pieces {

@@ -325,6 +325,11 @@ impl Slicer {
         Rectangle::new(corner(|axis| axis.first()), corner(|axis| axis.last()))?.moved(self.origin())
     }
 
+    /// How many planes of attributes there are.
+    fn planes(&self) -> usize {
+        self.attributes().map(|(_, width)| width).sum()
+    }
+
     /// The contour of all segments over a lattice.
     fn linked<'a>(
         &self,
@@ -334,7 +339,7 @@ impl Slicer {
     ) -> Contour {
         let cells = grid.points().map(|points| points - 1);
         let cut_sides = cut_sides(pieces.clone(), cells);
-        let linked = link::link(pieces, self.attributes().map(|(_, width)| width).sum());
+        let linked = link::link(pieces, self.planes());
         Contour {
             attributes: self.interleaved(&linked.attributes, linked.positions.len()),
             positions: linked.positions,

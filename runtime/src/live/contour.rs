@@ -152,7 +152,6 @@ impl LiveContour {
         let edit = if has_grown { None } else { slicer.edit(&self.slicer) };
         let kept = grown.as_ref().unwrap_or(&self.kept);
         let renewal = kept.renewal(&slicer, (detail, edit), hook)?;
-        // Nothing can fail any more.
         let kept = grown.as_mut().unwrap_or(&mut self.kept);
         let (contour, squares) = kept.commit(renewal, &slicer);
         if let Some(grown) = grown {

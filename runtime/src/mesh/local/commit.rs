@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use jbt_ir::watch::Watches;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bricks::{BrickMesh, BrickPlace, KeptBrick, around, octet};
@@ -63,6 +64,11 @@ struct NewBrick {
 impl BrickMesh {
     /// Lets new bricks take the places of old ones.
     pub(crate) fn commit(&mut self, renewal: Renewal) -> BrickChanges {
+        // Nothing can fail any more: the renewal has looked for memory.
+        Watches::NONE.hold(|| self.commit_held(renewal))
+    }
+
+    fn commit_held(&mut self, renewal: Renewal) -> BrickChanges {
         let mut commit = Commit::default();
         self.lattice = renewal.lattice.clone();
         self.edge = renewal.bricks.edge;
