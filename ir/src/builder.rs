@@ -32,7 +32,7 @@ use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, R
 use crate::limits::MAX_VALUES;
 use crate::op::{Domain, Op, Type};
 use crate::origin::{Origin, Part};
-use crate::watch::look;
+use crate::watch::{self, look};
 
 use known::{Key, KnownInsts};
 
@@ -290,6 +290,7 @@ impl FunctionBuilder {
             definition: None,
             uniform: false,
         };
+        watch::take(watch::growth(&self.values, 1) + self.function.values.growth(1));
         self.values.push(known);
         let value = self.function.values.push(type_);
         self.stand_ins[type_ as usize].get_or_insert(value);
@@ -301,6 +302,8 @@ impl FunctionBuilder {
         for result in &results {
             self.values[result.index()].definition = Some(definition);
         }
+        let block = &self.function.blocks[self.open[depth].block];
+        watch::take(self.function.insts.growth(1) + watch::growth(&block.insts, 1));
         let inst = self.function.insts.push(InstData { kind, results, origin: self.origin });
         self.function.blocks[self.open[depth].block].insts.push(inst);
         inst

@@ -12,6 +12,8 @@ use std::ops::{Index, IndexMut};
 
 use smallvec::SmallVec;
 
+use crate::watch;
+
 /// A typed index: the key of a [`Store`].
 pub trait Entity: Copy + Eq {
     /// The entity with this index.
@@ -112,6 +114,11 @@ impl<K: Entity, V> Store<K, V> {
     /// Makes room for so many more items.
     pub fn reserve(&mut self, more: usize) {
         self.items.reserve(more);
+    }
+
+    /// The bytes that so many more items ask for: see [`watch::growth`].
+    pub(crate) const fn growth(&self, more: usize) -> usize {
+        watch::growth(&self.items, more)
     }
 
     /// The name that the next `push` will give.

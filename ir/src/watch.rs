@@ -18,6 +18,7 @@
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::collections::BinaryHeap;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
@@ -245,12 +246,33 @@ pub fn take(bytes: usize) {
     }
 }
 
+/// The bytes that a list asks for if so many more values are pushed: 0 if it has room for them. Lists that
+/// grow together are asked for together.
+#[inline]
+#[must_use]
+pub const fn growth<T>(list: &Vec<T>, more: usize) -> usize {
+    grown_bytes::<T>([list.len(), list.capacity()], more)
+}
+
 /// Before so many values are pushed: as [`take`], if the list has to grow for them.
 #[inline]
 pub fn take_for<T>(list: &Vec<T>, more: usize) {
-    if list.capacity() - list.len() < more {
-        take((2 * list.capacity()).max(list.len() + more) * size_of::<T>());
+    take(growth(list, more));
+}
+
+/// Before a value is pushed: as [`take`], if the heap has to grow for it.
+#[inline]
+pub fn take_for_heap<T>(heap: &BinaryHeap<T>) {
+    take(grown_bytes::<T>([heap.len(), heap.capacity()], 1));
+}
+
+const fn grown_bytes<T>([length, capacity]: [usize; 2], more: usize) -> usize {
+    if capacity - length >= more {
+        return 0;
     }
+    let (twice, exact) = (2 * capacity, length + more);
+    let values = if twice > exact { twice } else { exact };
+    values * size_of::<T>()
 }
 
 #[cold]
@@ -376,6 +398,7 @@ mod tests {
         let list = vec![0_u8; 10];
         assert_eq!(guarded(|| take_for(&list, 1)), Ok(()));
         assert_eq!(guarded(|| take_for(&list, HUGE - 10)), Err(no_memory));
+        assert_eq!(guarded(|| take_for_heap(&BinaryHeap::from([1, 2]))), Ok(()));
     }
 
     #[test]

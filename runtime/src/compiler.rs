@@ -4,7 +4,8 @@ use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
-use jbt_ir::{Function, Level, Tables, limits};
+use jbt_ir::pass::PASS_BYTES;
+use jbt_ir::{Function, Level, Tables, limits, watch};
 use jbt_model::check::CheckedTree;
 
 use crate::error::CompileError;
@@ -179,6 +180,7 @@ impl Compiler {
             return Ok(kernel);
         }
         span!("code");
+        watch::take(function.values.len() * PASS_BYTES);
         let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
         let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
         self.remember(purpose, &kernel);

@@ -22,7 +22,7 @@ use jbt_text::field_difference;
 use crate::boxes::{Box3, Divisible as _, Range};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, within_memory};
 use crate::ordered::ordered;
 use crate::points::Points;
 use crate::prune::{Pruner, Region};
@@ -132,9 +132,11 @@ pub fn differing_places(
     if !bounds.is_finite() {
         return Err(DifferingError::Unbounded);
     }
-    let open = open_boxes(&pruner, around(&compiled, bounds))?;
-    let apart = apart(compiler, models, &compiled, &open)?;
-    Ok(places(&compiled, &open, &apart))
+    within_memory(|| {
+        let open = open_boxes(&pruner, around(&compiled, bounds))?;
+        let apart = apart(compiler, models, &compiled, &open)?;
+        Ok(places(&compiled, &open, &apart))
+    })
 }
 
 /// A model that is 0 nowhere in a box.

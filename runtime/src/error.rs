@@ -5,7 +5,7 @@ use std::error::Error;
 use jbt_ir::VerifyError;
 use jbt_ir::engine::RunError;
 use jbt_ir::memory::NoMemory;
-use jbt_ir::watch::{Ended, Stopped};
+use jbt_ir::watch::{self, Ended, Stopped};
 use jbt_model::diagnostic::{Diagnostics, Severity};
 
 /// What has to change so that an error goes away. Programs map it to what their users know: an exit code, an
@@ -167,6 +167,11 @@ impl From<Ended> for EvalError {
             Ended::NoMemory(error) => Self::Memory(error),
         }
     }
+}
+
+/// Does work that is no job, and ends it with an error where there is no memory for it.
+pub(crate) fn within_memory<T, E: From<EvalError>>(work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    watch::guarded(work).unwrap_or_else(|error| Err(EvalError::from(error).into()))
 }
 
 impl From<NoMemory> for EvalError {

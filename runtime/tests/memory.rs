@@ -6,6 +6,7 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+use std::cell::RefCell;
 use std::io::sink;
 use std::process::Command;
 use std::sync::Mutex;
@@ -14,17 +15,19 @@ use std::thread;
 
 use fastrand::Rng;
 use jbt::build::particles;
-use jbt::contour::{Detail, Plane, Slicer};
+use jbt::contour::{Detail, Plane, Rectangle, Slicer};
 use jbt::export::{Format, write};
 use jbt::import::particles::ParticleOptions;
+use jbt::live::LiveSection;
 use jbt::mesh::Lattice;
 use jbt::render::Quality;
 use jbt::sample::{Sampler, Wanted};
-use jbt::solid::Measure;
+use jbt::solid::{Measure, PartSolids};
 use jbt::{
-    CheckedTree, Classified, Compiler, ErrorKind, Fineness, LiveMesh, Model, Points, Polygonize, Query,
-    Render, SceneFormat, Solid, text,
+    Box3, CheckedTree, Classified, Compiler, ErrorKind, Fineness, LiveContour, LiveMesh, Model, Points,
+    Polygonize, Query, Ray, Render, SceneFormat, Solid, Tracer, text,
 };
+use jbt_testkit::random::Random;
 use jbt_testkit::scene::tree;
 use jbt_testkit::skip::short_or_long;
 use rustix::process::{Resource, Rlimit, setrlimit};
@@ -34,6 +37,9 @@ const LEAST: usize = 24;
 
 /// Names a work and the bytes that it may have, to the process that does it.
 const WORK: &str = "JBT_LARGE_WORK";
+
+/// What names of works begin with that are random models; a seed follows.
+const RANDOM: &str = "model ";
 
 /// What that process says.
 const ANSWER: &str = "an answer";
@@ -60,7 +66,7 @@ type Work = Box<dyn Fn() -> Done>;
 type Make = fn(bool) -> Work;
 
 /// Works by name, the megabytes that are enough for the large one, and how they are made.
-const WORKS: [(&str, usize, Make); 13] = [
+const WORKS: [(&str, usize, Make); 18] = [
     ("mesh", 180, mesh),
     ("mesh of particles", 100, mesh_of_particles),
     ("rows", 150, rows),
@@ -71,6 +77,11 @@ const WORKS: [(&str, usize, Make); 13] = [
     ("contour", 70, contour),
     ("measures", 270, measures),
     ("live mesh", 430, live),
+    ("edit of a live mesh", 430, edit),
+    ("edit of a live contour", 100, edit_of_contour),
+    ("rays", 200, rays),
+    ("memberships", 200, memberships),
+    ("parts", 200, parts),
     ("text", 140, nodes),
     ("table", 100, table),
     ("files", 100, files),
@@ -95,29 +106,51 @@ fn done_by_process(work: &str, room: usize) -> Result<bool, String> {
     }
 }
 
+/// Does pieces of work by their numbers, on two threads, and fails with all that they say is wrong.
+fn all_are_right(count: usize, look: impl Fn(usize) -> Vec<String> + Sync) {
+    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let each = || {
+        while let Some(index) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&index| index < count) {
+            let told = look(index);
+            wrong.lock().expect("one at a time").extend(told);
+        }
+    };
+    thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(each))));
+    let wrong = wrong.into_inner().expect("all have ended");
+    assert!(wrong.is_empty(), "{}: {}", wrong.len(), wrong.join("\n"));
+}
+
 #[test]
 fn want_of_memory_is_an_answer_or_an_error() {
     let last = short_or_long([1, 49]);
-    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let look = || {
-        while let Some(&(work, megabytes, _)) = WORKS.get(next.fetch_add(1, Ordering::Relaxed)) {
-            // More of the small sizes: there is more to fail.
-            let room =
-                |step: usize| (LEAST << 20) + ((megabytes - LEAST) << 20) * step * step / (last * last);
-            let found: Vec<_> = (0..=last).map(|step| done_by_process(work, room(step))).collect();
-            let [answers, errors] =
-                [true, false].map(|one| found.iter().filter(|it| **it == Ok(one)).count());
-            println!("{work}: {answers} answers, {errors} errors");
-            let mut wrong = wrong.lock().expect("one at a time");
-            if found.first() == Some(&Ok(true)) || found.last() == Some(&Ok(false)) {
-                wrong.push(format!("{work}: the least room is enough, or the most is not"));
-            }
-            wrong.extend(found.into_iter().filter_map(Result::err));
+    all_are_right(WORKS.len(), |index| {
+        let (work, megabytes, _) = WORKS[index];
+        // More of the small sizes: there is more to fail.
+        let room = |step: usize| (LEAST << 20) + ((megabytes - LEAST) << 20) * step * step / (last * last);
+        let found: Vec<_> = (0..=last).map(|step| done_by_process(work, room(step))).collect();
+        let [answers, errors] = [true, false].map(|one| found.iter().filter(|it| **it == Ok(one)).count());
+        println!("{work}: {answers} answers, {errors} errors");
+        let is_too_easy = found.first() == Some(&Ok(true)) || found.last() == Some(&Ok(false));
+        let easy = is_too_easy.then(|| format!("{work}: the least room is enough, or the most is not"));
+        easy.into_iter().chain(found.into_iter().filter_map(Result::err)).collect()
+    });
+}
+
+/// Models of every kind of node, in one to four times the least memory: 3 in short, 100 at length.
+#[test]
+fn so_it_is_for_random_models() {
+    let (answers, errors) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    all_are_right(short_or_long([3, 100]), |seed| {
+        let times = 4.0_f64.powf(Rng::with_seed(seed as u64).f64());
+        let room = (LEAST << 20) as f64 * times;
+        let done = done_by_process(&format!("{RANDOM}{seed}"), room as usize);
+        if let Ok(is_answer) = done {
+            let count = if is_answer { &answers } else { &errors };
+            count.fetch_add(1, Ordering::Relaxed);
         }
-    };
-    thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(look))));
-    let wrong = wrong.into_inner().expect("all have ended");
-    assert!(wrong.is_empty(), "{}: {}", wrong.len(), wrong.join("\n"));
+        done.err().into_iter().collect()
+    });
+    println!("random models: {answers:?} answers, {errors:?} errors");
 }
 
 #[test]
@@ -125,9 +158,14 @@ fn want_of_memory_is_an_answer_or_an_error() {
 fn work_of_few_bytes() {
     let wanted = std::env::var(WORK).expect("another test names the work");
     let (name, room) = wanted.split_once(':').expect("a name and a number");
-    let (_, _, make) = WORKS.into_iter().find(|(work, _, _)| *work == name).expect("a work");
     let room: u64 = room.parse().expect("a number");
-    let [large, small] = [false, true].map(make);
+    let [large, small] = match name.strip_prefix(RANDOM) {
+        Some(seed) => [random(seed.parse().expect("a number")), mesh(true)],
+        None => {
+            let (_, _, make) = WORKS.into_iter().find(|(work, _, _)| *work == name).expect("a work");
+            [false, true].map(make)
+        }
+    };
     // What is made once for a process is there.
     small().expect("there is no limit yet");
     let statm = std::fs::read_to_string("/proc/self/statm").expect("Linux says so");
@@ -142,6 +180,41 @@ fn work_of_few_bytes() {
         }
     }
     small().expect("the process can do what is small");
+}
+
+/// All that is asked of a random model. An error of another kind than [`ErrorKind::Limit`] is an answer.
+fn random(seed: u64) -> Work {
+    let model = Random::new(seed, seed).model(100);
+    let written = text::print(&model);
+    let region = Some(Box3::new([-3.0; 3], [3.0; 3]));
+    let settings = Polygonize { region, ..settings(32) };
+    let measure =
+        Measure { region: Some(Box3::new([-3.0; 3], [3.0; 3])), fineness: Fineness::Resolution(32) };
+    let render = Render { size: [100; 2], quality: Quality::Draft, ..Render::default() };
+    let mut rng = Rng::with_seed(seed);
+    let mut point = || std::array::from_fn(|_| 6.0 * rng.f32() - 3.0);
+    let points: Points = (0..1_000).map(|_| point()).collect();
+    Box::new(move || {
+        let unless_limit = |done: Done| match done {
+            Err((ErrorKind::Limit, told)) => Err((ErrorKind::Limit, told)),
+            Ok(()) | Err(_) => Ok(()),
+        };
+        let model = text::parse(written.as_bytes(), &text::Options::default());
+        let tree = match classified(model.and_then(|model| model.check())) {
+            Ok(tree) => tree,
+            Err(error) => return unless_limit(Err(error)),
+        };
+        let compiler = Compiler::new();
+        unless_limit(told(settings.mesh(&compiler, &tree).run()))?;
+        unless_limit(told(LiveMesh::of(&compiler.compile(&tree), settings).run()))?;
+        unless_limit(told(render.picture(&compiler, &tree).run()))?;
+        let solid = classified(Solid::new(&compiler, &tree))?;
+        unless_limit(told(solid.memberships(&points, 1e-3)))?;
+        unless_limit(told(solid.measure(&measure).run()))?;
+        let sampler = classified(Sampler::new(&compiler, &tree, Query::ALL))?;
+        let evaluator = sampler.evaluator();
+        unless_limit(told(evaluator.par_eval(&points, &mut evaluator.samples())))
+    })
 }
 
 fn ball() -> CheckedTree {
@@ -228,6 +301,88 @@ fn measures(small: bool) -> Work {
 fn live(small: bool) -> Work {
     let (tree, settings) = (cloud(if small { 10 } else { 30_000 }), settings(if small { 16 } else { 300 }));
     Box::new(move || told(LiveMesh::of(&Compiler::new().compile(&tree), settings).run()))
+}
+
+/// An edit that fails leaves everything as it was.
+fn edit(small: bool) -> Work {
+    let region = Some(Box3::new([-0.5; 3], [1.5; 3]));
+    let (before, after) = (cloud(10), cloud(if small { 12 } else { 30_000 }));
+    let settings = Polygonize { region, ..settings(if small { 16 } else { 300 }) };
+    let live = LiveMesh::of(&Compiler::new().for_edits().compile(&before), settings).run();
+    let live = RefCell::new(live.expect("a small mesh"));
+    let kept = (live.borrow().buffers().clone(), live.borrow().tree().nodes().len());
+    Box::new(move || {
+        let live = &mut *live.borrow_mut();
+        let done = told(live.replace(&after).run());
+        if done.is_err() {
+            assert!(
+                *live.buffers() == kept.0 && live.tree().nodes().len() == kept.1,
+                "the mesh is another one"
+            );
+        }
+        done
+    })
+}
+
+/// The same of a contour.
+fn edit_of_contour(small: bool) -> Work {
+    let rectangle = Some(Rectangle::new([-0.5; 2], [1.5; 2]).expect("a rectangle"));
+    let (before, after) = (cloud(10), cloud(if small { 12 } else { 30_000 }));
+    let detail =
+        Detail { fineness: Fineness::Resolution(if small { 16 } else { 16_000 }), ..Detail::default() };
+    let section = LiveSection { rectangle, detail, ..LiveSection::default() };
+    let live = LiveContour::new(&Compiler::new(), &before, &section).run();
+    let live = RefCell::new(live.expect("a small contour"));
+    let kept = (live.borrow().contour().positions.clone(), live.borrow().tree().nodes().len());
+    Box::new(move || {
+        let live = &mut *live.borrow_mut();
+        let done = told(live.replace(&after).run());
+        if done.is_err() {
+            let positions = &live.contour().positions;
+            assert!(
+                *positions == kept.0 && live.tree().nodes().len() == kept.1,
+                "the contour is another one"
+            );
+        }
+        done
+    })
+}
+
+fn rays(small: bool) -> Work {
+    let tracer = Tracer::new(&Compiler::new(), &ball(), Query::ALL).expect("it compiles");
+    let count = if small { 10 } else { 500_000 };
+    let origin = |index: usize| [index as f64 / count as f64, 0.0, -2.0];
+    let rays: Vec<Ray> = (0..count)
+        .map(|index| Ray { origin: origin(index), direction: [0.0, 0.0, 1.0], span: [0.0, 4.0] })
+        .collect();
+    Box::new(move || told(tracer.all_of(&rays, 1e-2)))
+}
+
+fn memberships(small: bool) -> Work {
+    let solid = Solid::new(&Compiler::new(), &ball()).expect("it compiles");
+    let count = if small { 10 } else { 3_000_000 };
+    let points: Points = (0..count).map(|index| [2.0 * index as f32 / count as f32, 0.0, 0.0]).collect();
+    Box::new(move || told(solid.memberships(&points, 0.0)))
+}
+
+/// Two parts of many leaves: which points are in them, what they have to do with each other, how far apart
+/// they are, and where the first one ends.
+fn parts(small: bool) -> Work {
+    let (count, tolerance) = if small { (10, 0.1) } else { (2_000, 1e-3) };
+    let part = |x: f64| {
+        let points = (0..count).map(|index| format!("point {{ at ({x} {} 0) radius 1 }}\n", index % 100));
+        format!("part \"p{x}\" {{ sum {{\n{}}} }}\n", points.collect::<String>())
+    };
+    let tree = tree(&format!("jbt 1\n{}{}", part(0.0), part(9.0)));
+    let points: Points = (0..if small { 10 } else { 1_000_000 }).map(|_| [0.0; 3]).collect();
+    Box::new(move || {
+        let parts = classified(PartSolids::new(&Compiler::new(), &tree))?;
+        told(parts.members(&points))?;
+        told(parts.relation(0, 1, tolerance))?;
+        told(parts.distance(0, 1, tolerance))?;
+        told(parts.solid(0).tight_bounds(None, tolerance as f32))?;
+        told(parts.solid(0).owners_in(Box3::new([-1.0; 3], [200.0; 3])))
+    })
 }
 
 fn files(small: bool) -> Work {

@@ -15,7 +15,7 @@
 use crate::entity::{Entity, Value};
 use crate::function::InstKind;
 use crate::limits::MAX_VALUES;
-use crate::watch::look;
+use crate::watch::{self, look};
 
 /// What makes two instructions the same: what they are, and up to three numbers of theirs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -126,6 +126,7 @@ impl KnownInsts {
         if wanted <= self.places.len() {
             return;
         }
+        watch::take(wanted * size_of::<u32>());
         let before = std::mem::replace(&mut self.places, vec![Taken::FREE.0; wanted]);
         for value in before.into_iter().filter_map(|place| Taken(place).value()) {
             look();

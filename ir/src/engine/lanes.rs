@@ -5,9 +5,13 @@ use std::sync::{Arc, Mutex};
 use crate::domain::lanes::{Scratch, Tape, WIDTH};
 use crate::level::Level;
 use crate::verify::Verified;
+use crate::watch;
 
 use super::backend::{Backend, Declined, Form};
 use super::program::{Interface, Program, Run};
+
+/// What making a tape takes for a value: 143 bytes were seen.
+const TAPE_BYTES: usize = 200;
 
 /// The SIMD interpreter: see [`crate::domain::lanes`].
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +32,7 @@ impl Backend for Interpreter {
 
     fn compile(&self, function: &Arc<Verified>, level: Level) -> Result<Arc<dyn Program>, Declined> {
         self.supports(level)?;
+        watch::take(function.function().values.len() * TAPE_BYTES);
         let tape = Tape::new(function).map_err(|error| Declined { reason: error.to_string() })?;
         let interface = Arc::new(Interface::new(function.function()));
         Ok(Arc::new(LanesProgram { tape, level, interface, scratch: Mutex::default() }))

@@ -41,6 +41,7 @@ use crate::builder::FunctionBuilder;
 use crate::function::Function;
 use crate::limits::MAX_VALUES;
 use crate::translate::rewrite;
+use crate::watch;
 
 /// A step from a function to another one.
 #[derive(Clone, Copy, Debug)]
@@ -115,6 +116,10 @@ pub const PIPELINE: &[Pass] = &[
     },
 ];
 
+/// What a pass takes for a value of a function, with the function that it makes, unless that is longer: 100
+/// to 170 bytes were seen.
+pub const PASS_BYTES: usize = 200;
+
 /// Runs the passes in order. The observer sees each pass's name and what the pass made. The passes behind one
 /// that makes more than [`MAX_VALUES`] values do not run: what it made is no function any more, and the
 /// verifier refuses it.
@@ -125,6 +130,7 @@ pub fn run_pipeline<'a>(
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Function {
     for pass in passes {
+        watch::take(function.values.len() * PASS_BYTES);
         function = (pass.run)(&function);
         observer(pass.name, &function);
         if function.values.len() > MAX_VALUES {

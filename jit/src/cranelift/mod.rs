@@ -19,7 +19,7 @@ use jbt_ir::engine::{Backend, Declined, Form, Program};
 use jbt_ir::limits::MAX_JIT_LIVE_VALUES;
 use jbt_ir::plan::Plan;
 use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
-use jbt_ir::{Function, Level, Verified};
+use jbt_ir::{Function, Level, Verified, watch};
 
 use crate::entry::Kernel;
 use crate::error::CompileError;
@@ -43,6 +43,8 @@ const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
 const BACKTRACKING_UP_TO: usize = 100;
 /// A function with more values than this would take seconds to compile for 16 points in a block.
 const LONG_FUNCTION: usize = 16_000;
+/// What compiling takes for a value: 3.4 KB were seen.
+const COMPILE_BYTES: usize = 4_000;
 /// Functions with more values than this are compiled on a thread that is not waited for once nobody wants
 /// them: shorter ones take some 20 ms at most.
 const ASIDE_FROM: usize = 1_000;
@@ -84,6 +86,7 @@ impl Cranelift {
         let outside = function.function();
         let ChosenPlan { plan, vectors, allocator } = self.choose(outside)?;
         let isa = isa::host(self.opt_level, allocator)?;
+        watch::take(outside.values.len() * COMPILE_BYTES);
         let lanes = vectors.count() * LANES;
         let lowered = guard(|| lower::lower(outside, &plan, vectors))?;
         let compile = move || guard(|| MachineCode::new(lowered, lanes, isa));
@@ -184,7 +187,7 @@ impl Backend for Cranelift {
 /// they are not.
 fn guard<T>(work: impl FnOnce() -> T) -> Result<T, CompileError> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
-        if jbt_ir::watch::is_stop(&*panic) {
+        if watch::is_stop(&*panic) {
             panic::resume_unwind(panic);
         }
         let text = panic.downcast_ref::<String>().map(String::as_str);

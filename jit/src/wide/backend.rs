@@ -5,7 +5,7 @@ use std::sync::Arc;
 use jbt_ir::engine::{Backend, Declined, Form, Program};
 use jbt_ir::pass::{Gates, gates};
 use jbt_ir::plan::Plan;
-use jbt_ir::{Function, Level, Verified};
+use jbt_ir::{Function, Level, Verified, watch};
 
 use super::{EmitterWish, emit, lanes};
 use crate::blob::{CodeBlob, Emitted};
@@ -17,6 +17,9 @@ use crate::prepare;
 
 /// A function of at most so many values gains nothing by being cut.
 const WHOLE_UP_TO: usize = 1_000;
+
+/// What emitting takes for a value: 250 bytes were seen.
+const EMIT_BYTES: usize = 400;
 
 /// The emitter of wide code with its settings. They change the time that compiling and running takes, and no
 /// bit of an answer. What is `None` is chosen by the level and the function.
@@ -66,6 +69,7 @@ impl Wide {
     pub(crate) fn emit(&self, function: &Verified, level: Level) -> Result<Emitted, CompileError> {
         let function = function.function();
         prepare::check(function)?;
+        watch::take(function.values.len() * EMIT_BYTES);
         let wish = EmitterWish {
             level: level.max(Level::Avx2),
             vectors: self.vectors,

@@ -240,6 +240,7 @@ impl Pruner {
     ) -> Result<Vec<u8>, EvalError> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
+        watch::take(selection.len());
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
         for &table in selection.present() {

@@ -14,10 +14,11 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use jbt_ir::limits::MAX_SEARCH_BOXES;
+use jbt_ir::watch;
 
 use super::{RegionError, Solid, SolidBatch};
 use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
-use crate::error::{Classified, ErrorKind, EvalError};
+use crate::error::{Classified, ErrorKind, EvalError, within_memory};
 use crate::ordered::ordered;
 use crate::prune::Region;
 
@@ -35,6 +36,11 @@ pub struct TightBounds {
     /// empty. It is not where ranges do not converge, or do so after too many boxes ([`MAX_SEARCH_BOXES`] for
     /// a side), or where f32 is coarser than the tolerance.
     pub converged: bool,
+}
+
+impl TightBounds {
+    /// Those of an empty solid.
+    const NOTHING: Self = Self { outer: None, inner: None, converged: true };
 }
 
 /// Why a solid has no tight bounds.
@@ -77,12 +83,17 @@ impl Solid {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(BoundsError::Tolerance { tolerance });
         }
-        let mut found = TightBounds { outer: None, inner: None, converged: true };
-        let mut outer = match self.region(region) {
+        let outer = match self.region(region) {
             Ok(bounds) => bounds,
-            Err(RegionError::Empty) => return Ok(found),
+            Err(RegionError::Empty) => return Ok(TightBounds::NOTHING),
             Err(error @ (RegionError::Bounds { .. } | RegionError::Unbounded)) => return Err(error.into()),
         };
+        within_memory(|| self.tightened(tolerance, outer))
+    }
+
+    /// The tight bounds of what is in a box.
+    fn tightened(&self, tolerance: f32, mut outer: Box3) -> Result<TightBounds, BoundsError> {
+        let mut found = TightBounds::NOTHING;
         for side in BoxSide::ALL {
             let mut search = SideSearch::new(self, side, tolerance, outer, found.inner);
             // What was found of a side narrows the search for the next one.
@@ -201,6 +212,7 @@ impl<'a> SideSearch<'a> {
         let reach = self.side.reach(&bounds);
         if reach > self.known() {
             self.opened += 1;
+            watch::take_for_heap(&self.open);
             self.open.push(FartherBox { reach, number: self.opened, bounds, around: around.clone() });
         }
     }

@@ -103,6 +103,7 @@ impl<'a> GapTree<'a> {
 
     fn push(&mut self, bounds: Box3, highest: f32, inside: Option<[f32; 3]>, region: Region) {
         self.bytes += size_of::<GapBox>() + region.bytes();
+        watch::take_for(&self.boxes, 1);
         self.boxes.push(GapBox { bounds, highest, inside, parts: GapParts::Uncut(region) });
     }
 
@@ -256,6 +257,7 @@ fn search(
         let low = least(&a.bounds, &b.bounds);
         if low < high {
             count += 1;
+            watch::take_for_heap(open);
             open.push(GapPair { low, number: count, boxes });
         }
         (high, count)

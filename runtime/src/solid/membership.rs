@@ -13,10 +13,11 @@
 use std::collections::VecDeque;
 
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
+use jbt_ir::watch;
 
 use super::{Solid, SolidBatch};
 use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
-use crate::error::{Classified, ErrorKind, EvalError};
+use crate::error::{Classified, ErrorKind, EvalError, within_memory};
 use crate::parallel::{join, scatter};
 use crate::points::Points;
 use crate::prune::Region;
@@ -82,6 +83,9 @@ impl Classified for MembershipError {
     }
 }
 
+/// What a question takes for a point: its place twice, its number, its answer twice.
+const POINT_BYTES: usize = 6 * size_of::<f32>() + size_of::<usize>() + 2 * size_of::<Membership>();
+
 impl Solid {
     /// Where a point is: see [`memberships`](Self::memberships).
     ///
@@ -108,6 +112,11 @@ impl Solid {
         if !(eps >= 0.0 && eps.is_finite()) {
             return Err(MembershipError::Distance { eps });
         }
+        within_memory(|| self.memberships_of(points, eps))
+    }
+
+    fn memberships_of(&self, points: &Points, eps: f32) -> Result<Vec<Membership>, MembershipError> {
+        watch::take(points.len() * POINT_BYTES);
         let moved = (points.origin() != self.field.origin()).then(|| points.moved(self.field.origin()));
         let planes = moved.as_ref().unwrap_or(points).planes();
         let point = |index: usize| planes.map(|plane| plane[index]);

@@ -44,7 +44,7 @@ use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, within_memory};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::support::{NoBox, around_in_f32};
@@ -190,7 +190,7 @@ impl Solid {
         if !bounds.is_proper() {
             return Err(OwnersError::Bounds { bounds });
         }
-        Ok(self.field.leaves_in(&self.pruner.region(bounds)?))
+        within_memory(|| Ok(self.field.leaves_in(&self.pruner.region(bounds)?)))
     }
 
     /// Which side of the surface all values of a range are on: true is inside. `None` if the range does not

@@ -173,6 +173,7 @@ impl<'a> PairSearch<'a> {
     fn push(&mut self, bounds: Box3, regions: [Region; 2], middle: f32) {
         self.count += 1;
         let urgency = self.urgency(&bounds, middle);
+        watch::take_for_heap(&self.open);
         self.open.push(PairBox { bounds, regions, middle, urgency, number: self.count });
     }
 

@@ -9,6 +9,7 @@
 //! What is said to be apart or to overlap is proven by ranges of both fields over boxes, so it holds for
 //! every value that a kernel gives there: see `overlap`.
 
+use jbt_ir::watch;
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::Intersection;
 use jbt_model::diagnostic::Diagnostics;
@@ -19,7 +20,7 @@ use super::{Measure, MeasureError, Measures, RegionError, Solid};
 use crate::boxes::Box3;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, within_memory};
 use crate::evaluator::Evaluator;
 use crate::points::Points;
 use crate::polygonize::Fineness;
@@ -142,6 +143,9 @@ impl Classified for PartError {
     }
 }
 
+/// What the answer about a point takes: a list of a few parts.
+const MEMBERS_BYTES: usize = size_of::<Vec<usize>>() + 6 * size_of::<usize>();
+
 impl PartSolids {
     /// The solids of all parts; of a model without parts there are none.
     ///
@@ -192,6 +196,11 @@ impl PartSolids {
     /// # Errors
     /// A field could not be evaluated.
     pub fn members(&self, points: &Points) -> Result<Vec<Vec<usize>>, EvalError> {
+        within_memory(|| self.members_of(points))
+    }
+
+    fn members_of(&self, points: &Points) -> Result<Vec<Vec<usize>>, EvalError> {
+        watch::take(points.len() * MEMBERS_BYTES);
         let mut members = vec![Vec::new(); points.len()];
         for (part, (_, solid)) in self.solids.iter().enumerate() {
             let field: &Evaluator = solid.evaluator();
@@ -215,6 +224,10 @@ impl PartSolids {
     /// See [`PartError`].
     pub fn relation(&self, a: usize, b: usize, tolerance: f64) -> Result<Relation, PartError> {
         let tolerance = checked(tolerance)?;
+        within_memory(|| self.relation_of(a, b, tolerance))
+    }
+
+    fn relation_of(&self, a: usize, b: usize, tolerance: f32) -> Result<Relation, PartError> {
         let apart = Relation::Apart { more_than: f64::from(tolerance) };
         let Some(common) = self.common(a, b, tolerance)? else { return Ok(apart) };
         match PairSearch::new([self.solid(a), self.solid(b)], common, tolerance).run()? {
@@ -264,7 +277,7 @@ impl PartSolids {
     pub fn distance(&self, a: usize, b: usize, tolerance: f64) -> Result<Option<Gap>, PartError> {
         let tolerance = checked(tolerance)?;
         let (Some(first), Some(second)) = (self.bounds(a)?, self.bounds(b)?) else { return Ok(None) };
-        let found = gap([self.solid(a), self.solid(b)], [first, second], tolerance)?;
+        let found = within_memory(|| gap([self.solid(a), self.solid(b)], [first, second], tolerance))?;
         Ok(found.map(|gap| Gap { points: gap.points.map(|point| self.tree.origin().world(point)), ..gap }))
     }
 

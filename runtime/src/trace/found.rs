@@ -1,5 +1,7 @@
 //! The results of a packet so far.
 
+use jbt_ir::watch;
+
 use super::hits::Hits;
 use super::polish::RayBracket;
 use super::ray::RayLine;
@@ -64,6 +66,9 @@ impl FoundHits {
         lines: &[RayLine],
         brackets: &[RayBracket],
     ) -> Result<(), EvalError> {
+        let planes = self.positions.iter().chain(&self.answers);
+        let grown: usize = planes.map(|plane| watch::growth(plane, brackets.len())).sum();
+        watch::take(watch::growth(&self.records, brackets.len()) + grown);
         let start = self.records.len();
         let each = tracer.full().evaluations_in(region) as f32;
         for bracket in brackets {
@@ -85,6 +90,8 @@ impl FoundHits {
 
     /// The hits, ordered by ray.
     pub(super) fn into_hits(self, tracer: &Target) -> Hits {
+        let each = 2 * size_of::<Record>() + size_of::<f32>() * (3 + self.answers.len());
+        watch::take(self.rays() * size_of::<u32>() + self.records.len() * each);
         // The number of hits is below 2^32: the limit of work ensures it.
         let mut starts = vec![0_u32; self.rays() + 1];
         for record in &self.records {

@@ -53,6 +53,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt_ir::limits::MAX_PACKET_RAYS;
+use jbt_ir::watch;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::owner;
 use jbt_model::query::Query;
@@ -62,7 +63,7 @@ use crate::buffer::Layout;
 use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError};
+use crate::error::{CompileError, EvalError, within_memory};
 use crate::evaluator::Evaluator;
 use crate::prune::Region;
 
@@ -97,6 +98,9 @@ pub struct Tracer {
 }
 
 brief_debug!(Tracer, "Tracer", this: engine = this.target.field.engine(), counters = this.counters());
+
+/// What is kept for a ray: its line, its answers, its place in a cell. An estimate.
+const RAY_BYTES: usize = size_of::<RayLine>() + 32;
 
 /// The work of a tracer so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -213,7 +217,7 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn first_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::First, STRIDE, &self.localized(rays), tolerance)
+        within_memory(|| self.hits(Want::First, STRIDE, &self.localized(rays), tolerance))
     }
 
     /// As [`first_of`](Self::first_of), for rays relative to the model's origin, with `stride` tolerances, 1
@@ -232,7 +236,7 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn all_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::All, STRIDE, &self.localized(rays), tolerance)
+        within_memory(|| self.hits(Want::All, STRIDE, &self.localized(rays), tolerance))
     }
 
     /// Whether each ray has a hit.
@@ -240,7 +244,7 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn any_of(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
-        self.blocked(STRIDE, &self.localized(rays), tolerance)
+        within_memory(|| self.blocked(STRIDE, &self.localized(rays), tolerance))
     }
 
     /// As [`any_of`](Self::any_of), for rays relative to the model's origin, with a tolerance about as long
@@ -293,7 +297,9 @@ impl Tracer {
     pub fn leaf(&self, position: [f32; 3]) -> Result<Option<NodeId>, EvalError> {
         let here = Box3::new(position, position);
         if here.is_proper() {
-            let leaves = self.target.field.leaves_in(&self.target.pruner.region(here)?);
+            let leaves = within_memory(|| {
+                Ok::<_, EvalError>(self.target.field.leaves_in(&self.target.pruner.region(here)?))
+            })?;
             if let [leaf] = leaves.as_slice() {
                 return Ok(Some(*leaf));
             }
@@ -323,6 +329,7 @@ impl Tracer {
         if origin.is_world() {
             return Cow::Borrowed(rays);
         }
+        watch::take(size_of_val(rays));
         rays.iter().map(|ray| Ray { origin: origin.local(ray.origin), ..*ray }).collect()
     }
 
@@ -345,6 +352,7 @@ impl Tracer {
             return Err(TraceError::Rays { rays: rays.len() });
         }
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
+        watch::take(rays.len() * RAY_BYTES);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
             lines.extend(RayLine::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);

@@ -236,10 +236,9 @@ impl<'a> Finder<'a> {
     /// Makes an instance of a node whose children are done, and remembers it if it can be met again.
     fn leave(&mut self, frame: Frame) -> InstanceId {
         let key = frame.key;
-        watch::take(INSTANCE_BYTES);
-        watch::take_for(&self.scene.instances, 1);
-        watch::take_for(&self.scene.fields, 1);
-        watch::take_for(&self.scene.positions, 1);
+        let Scene { instances, fields, positions, .. } = &self.scene;
+        let grown = watch::growth(instances, 1) + watch::growth(fields, 1) + watch::growth(positions, 1);
+        watch::take(INSTANCE_BYTES + grown);
         let id = self.close(frame);
         if !self.once[key.0.0 as usize] {
             self.known.insert(key, id);
