@@ -23,6 +23,7 @@ use crate::limits::{MAX_ROW_COPIES, MAX_ROW_VALUES};
 use crate::op::{Domain, Type};
 use crate::origin::Part;
 use crate::table::Tables;
+use crate::watch;
 
 /// How many inputs are a point; those behind them are numbers of a row.
 pub const POINT_PLANES: usize = 3;
@@ -140,6 +141,7 @@ impl RowWriter<'_> {
 
     /// The row itself, and those that own it.
     fn place_owners(&mut self, table: Table) {
+        watch::take(3 * self.lanes * size_of::<Option<u32>>());
         let mut rows: Vec<Option<u32>> = (0..self.lanes as u32).map(Some).collect();
         let mut table = table;
         loop {
@@ -205,6 +207,7 @@ impl RowWriter<'_> {
     fn column(&mut self, table: Table, column: usize) -> Option<Value> {
         let rows = &self.tables.tables[table];
         let place = self.places[table.index()].as_ref()?;
+        watch::take(self.lanes * size_of::<f32>());
         let number = |row: &Option<u32>| row.map_or(0.0, |row| rows.row(row as usize)[column]);
         let numbers = place.rows.iter().map(number).collect();
         Some(self.number(numbers))
@@ -224,6 +227,7 @@ impl RowWriter<'_> {
         let mut so_far: Option<Values> =
             fold.initial.iter().map(|value| self.values.get(value).copied()).collect();
         for copy in 0..copies {
+            watch::take(self.lanes * (size_of::<Option<u32>>() + size_of::<f32>()));
             let rows: Vec<Option<u32>> =
                 owners.rows.iter().map(|owner| owned(owner).get(copy).copied()).collect();
             let is_there = rows.iter().all(Option::is_some);

@@ -112,6 +112,8 @@ impl FunctionBuilder {
         builder.function.tables = Arc::clone(&function.tables);
         // A changed version is about as long.
         let count = function.values.len();
+        let each = size_of::<Type>() + size_of::<KnownValue>();
+        watch::take(count * each + function.insts.len() * size_of::<InstData>());
         builder.function.values.reserve(count);
         builder.function.insts.reserve(function.insts.len());
         builder.values.reserve(count);

@@ -28,6 +28,7 @@ use std::sync::Arc;
 use crate::entity::{Block, Entity, Inst, Results, Store, Table, Value, Values};
 use crate::op::{Op, Type};
 use crate::origin::Origin;
+use crate::watch;
 
 /// The meaning of the rows of a fold.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -213,6 +214,14 @@ pub struct Function {
 }
 
 impl Function {
+    /// A copy: stops the work here if there is no memory for it. See [`watch::take`].
+    #[must_use]
+    pub fn copied(&self) -> Self {
+        let each = size_of::<InstData>() + size_of::<Inst>();
+        watch::take(self.values.len() * size_of::<Type>() + self.insts.len() * each);
+        self.clone()
+    }
+
     /// A function without instructions.
     #[must_use]
     pub fn new(name: &str, inputs: &[&str]) -> Self {

@@ -301,6 +301,7 @@ impl Selection {
             let above = self.parent(table).map_or_else(|| vec![0], |parent| kept[parent.index()].clone());
             let Some(first) = result.begin(table, above.len()) else { continue };
             let (starts, active) = (self.starts(table), self.active(table));
+            watch::take((above.len() + 2 * active.len()) * size_of::<u32>());
             let mut stay = Vec::new();
             for (next, &owner) in above.iter().enumerate() {
                 let (owned, before) = (starts[owner as usize]..starts[owner as usize + 1], stay.len());

@@ -182,6 +182,12 @@ impl Watches {
         Self { offered: OFFERED.with_borrow(Clone::clone), active: ACTIVE.with_borrow(Clone::clone) }
     }
 
+    /// Those that are offered to the thread: nobody ends the work in progress.
+    #[must_use]
+    pub fn offered() -> Self {
+        Self { active: WorkEnd::Nothing, ..Self::present() }
+    }
+
     /// Whether there is one that may stop the work in progress.
     #[must_use]
     pub fn may_stop(&self) -> bool {

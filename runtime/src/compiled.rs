@@ -15,6 +15,7 @@ mod task;
 
 use std::sync::{Arc, OnceLock};
 
+use jbt_ir::pass::PASS_BYTES;
 use jbt_ir::{Selection, pass, watch};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedTree;
@@ -305,10 +306,11 @@ impl Compiled {
         lowering: Option<&Lowering<'t>>,
     ) -> Result<Option<Decisions>, CompileError> {
         let slopes = self.answers_of(PointScope::Regions, Query::GRADIENT, lowering)?;
+        watch::take(slopes.bound.kernel.lowered.values.len() * PASS_BYTES);
         let Some(function) = pass::decisions(&slopes.bound.kernel.lowered) else { return Ok(None) };
         let make = |(), earlier: Option<&Arc<Kernel>>| {
             let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(Query::GRADIENT));
-            let kernel = compiler.kernel(function.clone(), purpose, earlier).or_else(|_| {
+            let kernel = compiler.kernel(function.copied(), purpose, earlier).or_else(|_| {
                 // It is several times as long as the field's, which the engine has taken.
                 compiler.clone().on_engine(Engine::Lanes).kernel(function, purpose, None)
             })?;
@@ -434,7 +436,7 @@ impl Compiled {
         earlier: Option<&Arc<Kernel>>,
     ) -> Result<Arc<AnswerProgram>, CompileError> {
         let AnswerProgram { query, bound, .. } = straight;
-        let kernel = compiler.kernel(bound.kernel.lowered.clone(), Purpose::Answers(*query), earlier);
+        let kernel = compiler.kernel(bound.kernel.lowered.copied(), Purpose::Answers(*query), earlier);
         let kernel = kernel.map_err(|error| self.placed(error))?;
         let bound = compiler.bind(&kernel, Arc::clone(&bound.lowered));
         Ok(Arc::new(AnswerProgram::new(self.tree(), *query, bound)))

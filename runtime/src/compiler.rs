@@ -4,8 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
-use jbt_ir::pass::PASS_BYTES;
-use jbt_ir::{Function, Level, Tables, limits, watch};
+use jbt_ir::{Function, Level, Tables, limits};
 use jbt_model::check::CheckedTree;
 
 use crate::error::CompileError;
@@ -161,7 +160,7 @@ impl Compiler {
         if verified.function().values.len() > limits::MAX_JIT_VALUES {
             return None;
         }
-        let kernel = Kernel::new(function.clone(), Some(straight), verified, self.wish).ok()?;
+        let kernel = Kernel::new(function.copied(), Some(straight), verified, self.wish).ok()?;
         let kernel = Arc::new(kernel);
         self.remember(purpose, &kernel);
         Some(kernel)
@@ -180,8 +179,7 @@ impl Compiler {
             return Ok(kernel);
         }
         span!("code");
-        watch::take(function.values.len() * PASS_BYTES);
-        let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
+        let verified = optimise(function.copied(), purpose, &mut |_, _| {})?;
         let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
         self.remember(purpose, &kernel);
         Ok(kernel)

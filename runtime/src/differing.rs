@@ -106,20 +106,28 @@ pub fn differing_places(
     models: [&CheckedTree; 2],
     region: Option<Box3<f64>>,
 ) -> Result<Vec<DifferingPlace>, DifferingError> {
+    within_memory(|| differing_in(compiler, models, region))
+}
+
+fn differing_in(
+    compiler: &Compiler,
+    models: [&CheckedTree; 2],
+    region: Option<Box3<f64>>,
+) -> Result<Vec<DifferingPlace>, DifferingError> {
     let [first, second] = models;
     let mut whole = first.support().hull(second.support());
     if let Some(Box3 { low, high }) = region {
         whole = whole.intersection(Bounds::new(low.into(), high.into()));
     }
     let exact = field_difference(first, second).and_then(|model| model.check().ok());
-    let compiled = exact.and_then(|tree| {
-        let compiled = compiler.compile(&tree);
-        let pruner = compiled.pruner().ok()?;
-        Some((compiled, pruner))
-    });
-    let (compiled, pruner) = match compiled {
-        Some(compiled) => compiled,
-        None => {
+    let exact = exact.map(|tree| compiler.compile(&tree));
+    let (compiled, pruner) = match exact.map(|compiled| (compiled.pruner(), compiled)) {
+        Some((Ok(pruner), compiled)) => (compiled, pruner),
+        Some((Err(error @ (CompileError::Memory(_) | CompileError::Cancelled)), _)) => {
+            return Err(error.into());
+        }
+        // Of what is too large for a difference, nothing but its size is known.
+        Some((Err(_), _)) | None => {
             let compiled = compiler.compile(&anywhere(whole));
             let pruner = compiled.pruner()?;
             (compiled, pruner)
@@ -132,11 +140,9 @@ pub fn differing_places(
     if !bounds.is_finite() {
         return Err(DifferingError::Unbounded);
     }
-    within_memory(|| {
-        let open = open_boxes(&pruner, around(&compiled, bounds))?;
-        let apart = apart(compiler, models, &compiled, &open)?;
-        Ok(places(&compiled, &open, &apart))
-    })
+    let open = open_boxes(&pruner, around(&compiled, bounds))?;
+    let apart = apart(compiler, models, &compiled, &open)?;
+    Ok(places(&compiled, &open, &apart))
 }
 
 /// A model that is 0 nowhere in a box.

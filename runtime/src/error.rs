@@ -83,8 +83,8 @@ pub enum CompileError {
     /// A token of the caller's stopped it. Whoever asks again begins anew.
     #[error("compiling was cancelled")]
     Cancelled,
-    /// The memory for the rows of the model, or for what is known about them, is not to be had. Whoever asks
-    /// again begins anew.
+    /// The memory for the rows of the model, for what is known about them, or for its program is not to be
+    /// had. Whoever asks again begins anew.
     #[error(transparent)]
     Memory(NoMemory),
     /// The compiler made a program that breaks its own rules: a defect of jbt.
@@ -145,7 +145,7 @@ pub enum EvalError {
     /// A token of the caller's stopped it. Some of the answers may be written.
     #[error("evaluating was cancelled")]
     Cancelled,
-    /// The memory for the answers, or for what is made before the first of them, is not to be had.
+    /// The memory for the answers, or for what is made on the way to them, is not to be had.
     #[error(transparent)]
     Memory(NoMemory),
 }
@@ -172,6 +172,13 @@ impl From<Ended> for EvalError {
 /// Does work that is no job, and ends it with an error where there is no memory for it.
 pub(crate) fn within_memory<T, E: From<EvalError>>(work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     watch::guarded(work).unwrap_or_else(|error| Err(EvalError::from(error).into()))
+}
+
+/// The same of work that compiles.
+pub(crate) fn compiled_within_memory<T, E: From<CompileError>>(
+    work: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    watch::guarded(work).unwrap_or_else(|error| Err(CompileError::Memory(error).into()))
 }
 
 impl From<NoMemory> for EvalError {

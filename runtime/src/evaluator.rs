@@ -2,13 +2,12 @@
 //!
 //! `par_eval` cuts points into parts of [`PART`], one for a thread at a time. A part goes on as in `eval`.
 
-use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
 use crate::parallel::*;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
-use jbt_ir::{Selection, Tables, Verified};
+use jbt_ir::{Selection, Tables, Verified, watch};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::origin::ModelOrigin;
 use jbt_model::query::Query;
@@ -19,7 +18,7 @@ use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::{Counters, SharedCounters};
 use crate::divide::Edit;
-use crate::error::{CompileError, EvalError};
+use crate::error::{CompileError, EvalError, compiled_within_memory};
 use crate::finite_points;
 use crate::kernel::{BoundKernel, Engine};
 use crate::points::{AsPoints, Points};
@@ -127,7 +126,7 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`].
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.compiled.updated(tree), self.scope, self.query())
+        compiled_within_memory(|| Self::of(&self.compiled.updated(tree), self.scope, self.query()))
     }
 
     /// What runs points of regions.
@@ -355,7 +354,7 @@ impl Evaluator {
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
     ) -> Result<usize, EvalError> {
-        let placed = finite_points::made_finite(&points);
+        let placed = finite_points::made_finite(&points)?;
         let lanes =
             bound.run_with_finite_gradient(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
         finite_points::blank(self.layout(), &points, answers);
@@ -382,15 +381,19 @@ impl Evaluator {
 
     /// The leaves behind the rows of a region, ascending.
     pub(crate) fn leaves_in(&self, region: &Region) -> Vec<NodeId> {
-        let mut leaves = BTreeSet::new();
+        let mut leaves = Vec::new();
         let bound = self.regional();
         let schemas = &bound.kernel.function.function().tables;
         for (table, rows) in bound.tables().tables.iter() {
             let slots = schemas[table].slots.len();
-            for &row in region.selection().active(table) {
+            let active = region.selection().active(table);
+            watch::take_for(&leaves, active.len() * slots);
+            for &row in active {
                 leaves.extend(&rows.nodes[row as usize * slots..][..slots]);
             }
         }
+        leaves.sort_unstable();
+        leaves.dedup();
         leaves.into_iter().map(NodeId).collect()
     }
 

@@ -18,6 +18,7 @@
 use std::sync::Arc;
 
 use jbt_ir::domain::tangent::LARGEST_SLOPE;
+use jbt_ir::memory::probe;
 use jbt_ir::pass::GRADIENT_OUTPUTS;
 use jbt_ir::{Selection, watch};
 
@@ -48,6 +49,8 @@ impl BoundKernel {
         if gradient.iter().all(|plane| are_tame(plane)) {
             return Ok(lanes);
         }
+        // Places and answers of all points, at most. Few points are a rule, and few ask for little.
+        probe(points[0].len() * (size_of::<usize>() + 7 * size_of::<f32>()))?;
         let wild = |&index: &usize| gradient.iter().any(|plane| !are_tame(&plane[index..=index]));
         let wild: Vec<usize> = (0..points[0].len()).filter(wild).collect();
         let Some(guarded) = self.guarded()? else {

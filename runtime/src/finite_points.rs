@@ -8,6 +8,8 @@
 //! Programs know nothing of this. Whoever calls them looks at all points first, which costs a comparison a
 //! coordinate and nothing a row.
 
+use jbt_ir::memory::{NoMemory, room};
+
 use crate::buffer::Layout;
 
 /// Whether all points are places: each coordinate is finite.
@@ -18,9 +20,14 @@ pub fn are_finite(points: &[&[f32]; 3]) -> bool {
 }
 
 /// Points with a place for each: infinities are the largest numbers, NaNs are 0.
-pub fn made_finite(points: &[&[f32]; 3]) -> [Vec<f32>; 3] {
+///
+/// # Errors
+/// There is no memory for them.
+pub fn made_finite(points: &[&[f32]; 3]) -> Result<[Vec<f32>; 3], NoMemory> {
     let place = |&x: &f32| if x.is_nan() { 0.0 } else { x.clamp(f32::MIN, f32::MAX) };
-    points.map(|plane| plane.iter().map(place).collect())
+    let mut placed = [room(points[0].len())?, room(points[1].len())?, room(points[2].len())?];
+    placed.iter_mut().zip(points).for_each(|(placed, plane)| placed.extend(plane.iter().map(place)));
+    Ok(placed)
 }
 
 /// Writes the answers of points that have a NaN for a coordinate over what was answered in the places that

@@ -94,7 +94,8 @@ impl<'a, T, E> Job<'a, T, E> {
         let goes_on = move || !tokens.iter().any(CancelToken::is_cancelled);
         let (asked, around) = (goes_on.clone(), Watches::present());
         let mut hook = move |part| {
-            watchers.iter_mut().for_each(|watch| watch(part));
+            // The watchers' own work is not ended from here.
+            Watches::offered().hold(|| watchers.iter_mut().for_each(|watch| watch(part)));
             // Whoever does a job on the way of other work may have a token for all of it.
             asked() && around.go_on()
         };

@@ -30,6 +30,8 @@ brief_debug!(Probe<'_>, "Probe", this: point = this.point, answers = this.answer
 
 impl Evaluator {
     /// Begins to ask about one point, whose coordinates count from the [origin](Self::origin).
+    ///
+    /// It has no error: the first answer panics if there is no memory for a program that it needs.
     #[must_use]
     pub fn probe(&self, point: [f32; 3]) -> Probe<'_> {
         Probe::new(self, point)
@@ -49,7 +51,8 @@ impl<'a> Probe<'a> {
             let mut out: Vec<&mut [f32]> = answers.iter_mut().map(std::slice::from_mut).collect();
             // It has no error to answer, so nobody stops it.
             let asked = Watches::NONE.hold(|| self.evaluator.eval_planes(planes, &mut out));
-            asked.expect("one point fits planes of one");
+            // One point fits planes of one, so the error is want of memory.
+            asked.unwrap_or_else(|error| panic!("a point could not be evaluated: {error}"));
             answers
         })
     }

@@ -14,8 +14,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use fastrand::Rng;
-use jbt::build::particles;
+use jbt::build::{particles, point};
 use jbt::contour::{Detail, Plane, Rectangle, Slicer};
+use jbt::differing::differing_places;
 use jbt::export::{Format, write};
 use jbt::import::particles::ParticleOptions;
 use jbt::live::LiveSection;
@@ -25,7 +26,7 @@ use jbt::sample::{Sampler, Wanted};
 use jbt::solid::{Measure, PartSolids};
 use jbt::{
     Box3, CheckedTree, Classified, Compiler, ErrorKind, Fineness, LiveContour, LiveMesh, Model, Points,
-    Polygonize, Query, Ray, Render, SceneFormat, Solid, Tracer, text,
+    Polygonize, Query, Ray, Render, SceneFormat, Solid, Tracer, Tree, text,
 };
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::tree;
@@ -66,7 +67,7 @@ type Work = Box<dyn Fn() -> Done>;
 type Make = fn(bool) -> Work;
 
 /// Works by name, the megabytes that are enough for the large one, and how they are made.
-const WORKS: [(&str, usize, Make); 18] = [
+const WORKS: [(&str, usize, Make); 19] = [
     ("mesh", 180, mesh),
     ("mesh of particles", 100, mesh_of_particles),
     ("rows", 150, rows),
@@ -82,6 +83,7 @@ const WORKS: [(&str, usize, Make); 18] = [
     ("rays", 200, rays),
     ("memberships", 200, memberships),
     ("parts", 200, parts),
+    ("union", 200, union),
     ("text", 140, nodes),
     ("table", 100, table),
     ("files", 100, files),
@@ -182,22 +184,38 @@ fn work_of_few_bytes() {
     small().expect("the process can do what is small");
 }
 
-/// All that is asked of a random model. An error of another kind than [`ErrorKind::Limit`] is an answer.
+/// All that is asked of a random model, the seed says what first. Errors of the model and of arguments are
+/// answers.
 fn random(seed: u64) -> Work {
-    let model = Random::new(seed, seed).model(100);
-    let written = text::print(&model);
+    type Step = Box<dyn Fn(&Compiler, &CheckedTree) -> Done>;
+    let written = text::print(&Random::new(seed, seed).model(100));
     let region = Some(Box3::new([-3.0; 3], [3.0; 3]));
     let settings = Polygonize { region, ..settings(32) };
-    let measure =
-        Measure { region: Some(Box3::new([-3.0; 3], [3.0; 3])), fineness: Fineness::Resolution(32) };
+    let region = Some(Box3::new([-3.0; 3], [3.0; 3]));
+    let measure = Measure { region, fineness: Fineness::Resolution(32) };
     let render = Render { size: [100; 2], quality: Quality::Draft, ..Render::default() };
     let mut rng = Rng::with_seed(seed);
     let mut point = || std::array::from_fn(|_| 6.0 * rng.f32() - 3.0);
     let points: Points = (0..1_000).map(|_| point()).collect();
+    let inside = points.clone();
+    let mut steps: [Step; 6] = [
+        Box::new(move |compiler, tree| told(settings.mesh(compiler, tree).run())),
+        Box::new(move |compiler, tree| told(LiveMesh::of(&compiler.compile(tree), settings).run())),
+        Box::new(move |compiler, tree| told(render.picture(compiler, tree).run())),
+        Box::new(move |compiler, tree| {
+            told(classified(Solid::new(compiler, tree))?.memberships(&inside, 1e-3))
+        }),
+        Box::new(move |compiler, tree| told(classified(Solid::new(compiler, tree))?.measure(&measure).run())),
+        Box::new(move |compiler, tree| {
+            let evaluator = classified(compiler.evaluator(tree, Query::ALL))?;
+            told(evaluator.par_eval(&points, &mut evaluator.samples()))
+        }),
+    ];
+    steps.rotate_left(seed as usize % 6);
     Box::new(move || {
         let unless_limit = |done: Done| match done {
-            Err((ErrorKind::Limit, told)) => Err((ErrorKind::Limit, told)),
-            Ok(()) | Err(_) => Ok(()),
+            Err((ErrorKind::Unbounded | ErrorKind::Argument | ErrorKind::Model, _)) => Ok(()),
+            done => done,
         };
         let model = text::parse(written.as_bytes(), &text::Options::default());
         let tree = match classified(model.and_then(|model| model.check())) {
@@ -205,15 +223,7 @@ fn random(seed: u64) -> Work {
             Err(error) => return unless_limit(Err(error)),
         };
         let compiler = Compiler::new();
-        unless_limit(told(settings.mesh(&compiler, &tree).run()))?;
-        unless_limit(told(LiveMesh::of(&compiler.compile(&tree), settings).run()))?;
-        unless_limit(told(render.picture(&compiler, &tree).run()))?;
-        let solid = classified(Solid::new(&compiler, &tree))?;
-        unless_limit(told(solid.memberships(&points, 1e-3)))?;
-        unless_limit(told(solid.measure(&measure).run()))?;
-        let sampler = classified(Sampler::new(&compiler, &tree, Query::ALL))?;
-        let evaluator = sampler.evaluator();
-        unless_limit(told(evaluator.par_eval(&points, &mut evaluator.samples())))
+        steps.iter().try_for_each(|step| unless_limit(step(&compiler, &tree)))
     })
 }
 
@@ -303,22 +313,22 @@ fn live(small: bool) -> Work {
     Box::new(move || told(LiveMesh::of(&Compiler::new().compile(&tree), settings).run()))
 }
 
-/// An edit that fails leaves everything as it was.
+/// An edit that fails leaves everything as it was: the model before changes nothing.
 fn edit(small: bool) -> Work {
     let region = Some(Box3::new([-0.5; 3], [1.5; 3]));
     let (before, after) = (cloud(10), cloud(if small { 12 } else { 30_000 }));
     let settings = Polygonize { region, ..settings(if small { 16 } else { 300 }) };
     let live = LiveMesh::of(&Compiler::new().for_edits().compile(&before), settings).run();
     let live = RefCell::new(live.expect("a small mesh"));
-    let kept = (live.borrow().buffers().clone(), live.borrow().tree().nodes().len());
+    let kept = live.borrow().buffers().clone();
     Box::new(move || {
         let live = &mut *live.borrow_mut();
         let done = told(live.replace(&after).run());
         if done.is_err() {
-            assert!(
-                *live.buffers() == kept.0 && live.tree().nodes().len() == kept.1,
-                "the mesh is another one"
-            );
+            assert!(*live.buffers() == kept, "the mesh is another one");
+            assert_eq!(live.tree().support(), before.support(), "the model is another one");
+            let again = classified(live.replace(&before).run());
+            assert!(again.is_ok_and(|change| change.is_empty()), "something was left");
         }
         done
     })
@@ -333,16 +343,15 @@ fn edit_of_contour(small: bool) -> Work {
     let section = LiveSection { rectangle, detail, ..LiveSection::default() };
     let live = LiveContour::new(&Compiler::new(), &before, &section).run();
     let live = RefCell::new(live.expect("a small contour"));
-    let kept = (live.borrow().contour().positions.clone(), live.borrow().tree().nodes().len());
+    let kept = live.borrow().contour().positions.clone();
     Box::new(move || {
         let live = &mut *live.borrow_mut();
         let done = told(live.replace(&after).run());
         if done.is_err() {
-            let positions = &live.contour().positions;
-            assert!(
-                *positions == kept.0 && live.tree().nodes().len() == kept.1,
-                "the contour is another one"
-            );
+            assert!(live.contour().positions == kept, "the contour is another one");
+            assert_eq!(live.tree().support(), before.support(), "the model is another one");
+            let again = classified(live.replace(&before).run());
+            assert!(again.is_ok_and(|change| change.is_empty()), "something was left");
         }
         done
     })
@@ -365,23 +374,46 @@ fn memberships(small: bool) -> Work {
     Box::new(move || told(solid.memberships(&points, 0.0)))
 }
 
-/// Two parts of many leaves: which points are in them, what they have to do with each other, how far apart
-/// they are, and where the first one ends.
+/// Parts of many leaves, two of them apart and two that overlap: which points are in them, what they have to
+/// do with each other, how far apart they are, and where one ends.
 fn parts(small: bool) -> Work {
     let (count, tolerance) = if small { (10, 0.1) } else { (2_000, 1e-3) };
     let part = |x: f64| {
         let points = (0..count).map(|index| format!("point {{ at ({x} {} 0) radius 1 }}\n", index % 100));
         format!("part \"p{x}\" {{ sum {{\n{}}} }}\n", points.collect::<String>())
     };
-    let tree = tree(&format!("jbt 1\n{}{}", part(0.0), part(9.0)));
+    let tree = tree(&format!("jbt 1\n{}{}{}", part(0.0), part(1.0), part(9.0)));
     let points: Points = (0..if small { 10 } else { 1_000_000 }).map(|_| [0.0; 3]).collect();
     Box::new(move || {
         let parts = classified(PartSolids::new(&Compiler::new(), &tree))?;
         told(parts.members(&points))?;
-        told(parts.relation(0, 1, tolerance))?;
-        told(parts.distance(0, 1, tolerance))?;
+        told(parts.relations(tolerance))?;
+        told(parts.distance(0, 2, tolerance))?;
         told(parts.solid(0).tight_bounds(None, tolerance as f32))?;
         told(parts.solid(0).owners_in(Box3::new([-1.0; 3], [200.0; 3])))
+    })
+}
+
+/// A union of very many leaves: which rows may win in a box, as often as a tree of rows is worth it, and where
+/// the fields of two models differ, one of which has a leaf less.
+fn union(small: bool) -> Work {
+    let balls = |count: usize| {
+        let mut rng = Rng::with_seed(3);
+        let ball = |rng: &mut Rng| point(std::array::from_fn(|_| rng.f64()), 0.5 / (count as f64).cbrt());
+        let model = Model::new(Tree::union((0..count).map(|_| ball(&mut rng))));
+        model.check().expect("a good model")
+    };
+    let count = if small { 10 } else { 200_000 };
+    let few: usize = count / 4 + 2;
+    let trees = [balls(few), balls(few - 1)];
+    let solid = Solid::new(&Compiler::new(), &balls(count)).expect("it compiles");
+    Box::new(move || {
+        for index in 0..100 {
+            let at = index as f32 / 100.0;
+            told(solid.membership([at; 3], 1e-3))?;
+            told(solid.owners_in(Box3::new([at; 3], [at + 0.5; 3])))?;
+        }
+        told(differing_places(&Compiler::new(), [&trees[0], &trees[1]], None))
     })
 }
 

@@ -50,6 +50,7 @@ pub fn field_difference(first: &CheckedTree, second: &CheckedTree) -> Option<Mod
     if first.iso().to_bits() != second.iso().to_bits() && trees.iter().any(|tree| asks_iso(tree)) {
         return None;
     }
+    jbt_ir::watch::take((first.nodes().len() + second.nodes().len()) * NODE_BYTES);
     let mut non_negative = HashMap::new();
     let [a, b] = trees.map(|tree| plain(tree, &mut non_negative));
     let hashes = [NodeHashes::new(&a), NodeHashes::new(&b)];
@@ -57,6 +58,9 @@ pub fn field_difference(first: &CheckedTree, second: &CheckedTree) -> Option<Mod
     let root = search.run(&a, &b).unwrap_or_else(Tree::empty);
     Some(Model { iso: first.iso().into(), ..Model::new(root) })
 }
+
+/// What is kept for a node: two copies of it, its hash, its partners. 600 bytes were seen.
+const NODE_BYTES: usize = 800;
 
 /// Whether the field of a node depends on the iso-value.
 fn asks_iso(kind: &NodeKind) -> bool {

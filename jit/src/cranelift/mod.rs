@@ -84,9 +84,10 @@ impl Cranelift {
     /// When the processor, a limit or the system forbids it.
     pub fn kernel(&self, function: &Verified) -> Result<Kernel, CompileError> {
         let outside = function.function();
+        prepare::check(outside)?;
+        watch::take(outside.values.len() * COMPILE_BYTES);
         let ChosenPlan { plan, vectors, allocator } = self.choose(outside)?;
         let isa = isa::host(self.opt_level, allocator)?;
-        watch::take(outside.values.len() * COMPILE_BYTES);
         let lanes = vectors.count() * LANES;
         let lowered = guard(|| lower::lower(outside, &plan, vectors))?;
         let compile = move || guard(|| MachineCode::new(lowered, lanes, isa));

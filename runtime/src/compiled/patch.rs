@@ -14,7 +14,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use jbt_ir::{Entity as _, Function, Table, Tables};
+use jbt_ir::{Entity as _, Function, Table, Tables, watch};
 use jbt_lower::prune_info::{PruneInfo, Support};
 use jbt_lower::{Lowered, Lowering, RangeFunction};
 use jbt_model::check::{CheckedTree, NodeId};
@@ -207,6 +207,7 @@ const ORDER: &str = "order";
 impl ChangedRows {
     /// The numbers of the whole model, with those of changed rows.
     fn written(&self, function: &Function, old: &Tables, small: &Tables) -> Tables {
+        watch::take(old.tables.values().map(|rows| size_of_val(&*rows.numbers)).sum::<usize>());
         let mut tables = old.clone();
         for (index, pairs) in self.pairs.iter().enumerate() {
             let table = Table::new(index);

@@ -2,7 +2,8 @@
 
 use jbt_ir::domain::counting::{evaluations_per_row, of_selection};
 use jbt_ir::limits::MAX_VALUES;
-use jbt_ir::{Selection, pass};
+use jbt_ir::pass::PASS_BYTES;
+use jbt_ir::{Selection, pass, watch};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedNode;
 use jbt_model::diagnostic::Diagnostic;
@@ -71,7 +72,7 @@ impl Compiled {
     /// What lowering says: numbers that leave the range of f32, or a program that is beyond a limit before
     /// any pass. No task can be done then.
     pub fn too_large_for(&self, tasks: &[Task]) -> Result<Vec<(Task, CompileError)>, CompileError> {
-        jbt_ir::watch::stoppable(|| {
+        watch::stoppable(|| {
             let lowering = Lowering::with(self.tree(), &PoolWorkers);
             // The program for all answers is the longest that lowering makes, but for that of ranges, which
             // is a few times that for the field.
@@ -116,10 +117,13 @@ impl Compiled {
     /// # Errors
     /// What lowering says.
     pub fn evaluations_per_point(&self, query: Query) -> Result<u64, CompileError> {
-        jbt_ir::watch::stoppable(|| {
+        watch::stoppable(|| {
             let Lowered { function, tables } = self.lowered(None, |lowering| lowering.answers(query))?;
             let shorter = [pass::fold_constants, pass::simplify, pass::share, pass::dce];
-            let function = shorter.iter().fold(function, |function, pass| pass(&function));
+            let function = shorter.iter().fold(function, |function, pass| {
+                watch::take(function.values.len() * PASS_BYTES);
+                pass(&function)
+            });
             let all = Selection::new(&function, &tables);
             Ok(of_selection(&evaluations_per_row(&function), &all))
         })?

@@ -14,7 +14,7 @@ use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
 use crate::divide::Edit;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, compiled_within_memory};
 use crate::evaluator::Evaluator;
 use crate::job::JobError;
 use crate::kernel::Engine;
@@ -187,13 +187,13 @@ impl Slicer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
-        match plane.0 {
+        compiled_within_memory(|| match plane.0 {
             PlaneKind::Across { .. } => Self::looking(compiled, plane, query),
             PlaneKind::Spanned { .. } => {
                 let moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
                 Self::looking(&moved, plane, query)
             }
-        }
+        })
     }
 
     /// A slicer for another model, usually an edited one, and the same plane: see [`Compiled::updated`]. The
@@ -203,12 +203,14 @@ impl Slicer {
     /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
         let compiled = self.pruner.compiled();
-        let updated = match self.plane.0 {
-            PlaneKind::Across { .. } => compiled.updated(tree),
-            PlaneKind::Spanned { .. } => compiled.updated(&tree.mapped(self.plane.rows())),
-        };
         let query = if self.full.is_some() { Query::ATTRIBUTES } else { Query::FIELD };
-        Self::looking(&updated, &self.plane, query)
+        compiled_within_memory(|| {
+            let updated = match self.plane.0 {
+                PlaneKind::Across { .. } => compiled.updated(tree),
+                PlaneKind::Spanned { .. } => compiled.updated(&tree.mapped(self.plane.rows())),
+            };
+            Self::looking(&updated, &self.plane, query)
+        })
     }
 
     /// A slicer for a compiled model that has the plane across an axis.

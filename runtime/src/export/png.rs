@@ -3,6 +3,8 @@
 
 use std::io::{self, Write};
 
+use jbt_ir::memory::room;
+
 use crate::picture::Picture;
 use crate::span::span;
 
@@ -42,7 +44,10 @@ pub fn write_png_with(picture: &Picture, effort: PngEffort, out: &mut dyn Write)
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header().map_err(plain)?;
     if opaque {
-        let bytes: Vec<u8> = picture.pixels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+        let pixels = picture.pixels();
+        let bytes = room::<u8>(3 * pixels.len());
+        let mut bytes = bytes.map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))?;
+        bytes.extend(pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]));
         writer.write_image_data(&bytes).map_err(plain)?;
     } else {
         writer.write_image_data(picture.pixels().as_flattened()).map_err(plain)?;

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use jbt_ir::domain::counting::{evaluations_per_row, of_selection, ops_per_row};
 use jbt_ir::engine::BoundProgram;
-use jbt_ir::pass::dce;
+use jbt_ir::pass::{PASS_BYTES, dce};
 use jbt_ir::{Function, Selection, Straight, Tables, Verified, watch};
 
 use super::engine::{CompiledFunction, Engine, Wish, compile};
@@ -57,10 +57,11 @@ impl Kernel {
     /// program is several times as long.
     pub(crate) fn guarded(&self) -> Option<&Arc<Self>> {
         let make = || {
-            let mut field = self.lowered.clone();
+            let mut field = self.lowered.copied();
             field.outputs.truncate(1);
             let body = field.body;
             field.blocks[body].results.truncate(1);
+            watch::take(field.values.len() * PASS_BYTES);
             let field = dce(&field);
             let verified = optimise(field.clone(), Purpose::FiniteGradient, &mut |_, _| {}).ok()?;
             let CompiledFunction { engine, level, .. } = self.compiled;

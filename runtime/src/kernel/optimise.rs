@@ -80,7 +80,7 @@ pub fn straighten(
         if before.is_none() && Straight::new(function, tables).is_none() {
             return Ok(None);
         }
-        made = run(function.clone(), first, &mut |_, _| {})?;
+        made = run(function.copied(), first, &mut |_, _| {})?;
         &made
     };
     Ok(match before {
@@ -97,7 +97,7 @@ pub fn optimise_straight(
     straight: &Straight,
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Result<Verified, CompileError> {
-    finish(run(straight.function().clone(), PIPELINE, observer)?)
+    finish(run(straight.function().copied(), PIPELINE, observer)?)
 }
 
 fn run<'a>(

@@ -19,7 +19,7 @@
 
 use std::sync::OnceLock;
 
-use jbt_ir::{Entity as _, Selection, Table, Tables};
+use jbt_ir::{Entity as _, Selection, Table, Tables, watch};
 use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest, StepFields};
 use jbt_model::combine::Extreme;
 
@@ -216,6 +216,7 @@ fn entries(group: &ContestGroup, selection: &Selection, firsts: &[usize], masks:
             let part = mask.trailing_zeros() as u8;
             mask &= mask - 1;
             let row = active[position as usize];
+            watch::take_for(&entered, 1);
             // Selections have fewer than 2^32 rows.
             entered.push(RowInBox { row, place: place as u32, owner, part, stays: !group.rows });
         }
@@ -272,6 +273,7 @@ impl ContestRound {
             Extreme::Largest => [low, high],
             Extreme::Smallest => [-high, -low],
         };
+        watch::take_for(&self.met, 1);
         self.met.push(MetRow { entry, group, low, high });
     }
 
@@ -283,6 +285,7 @@ impl ContestRound {
         (probes, limit): (Option<ProbeRanges<'_>>, Option<DifferenceLimit<'_>>),
         masks: &mut [u8],
     ) {
+        watch::take(size_of_val(&*self.met));
         // In a box, those of one owner in the order of operands.
         self.met.sort_by_key(|met| (met.entry.part, met.entry.owner, met.group, met.entry.place));
         let together =

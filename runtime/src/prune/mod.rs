@@ -51,7 +51,7 @@ use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range, wanted};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError};
+use crate::error::{CompileError, EvalError, compiled_within_memory};
 
 use cull::Boxes;
 use program::RangeProgram;
@@ -173,7 +173,7 @@ impl Pruner {
     /// # Errors
     /// Those of [`Compiled::pruner`].
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        self.compiled.updated(tree).pruner()
+        compiled_within_memory(|| self.compiled.updated(tree).pruner())
     }
 
     /// What it runs.

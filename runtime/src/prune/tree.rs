@@ -35,12 +35,16 @@ pub(super) struct RowTree {
     levels: Vec<Vec<Box3>>,
 }
 
+/// What making the tree takes for a row: its middle, its place twice, and its part of the levels.
+const TREE_BYTES: usize = 48;
+
 /// The box that holds nothing.
 const NOTHING: Box3 = Box3 { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
 
 impl RowTree {
     /// The tree of these active rows, at least one.
     pub(super) fn new(supports: &RowSupports, active: &[u32]) -> Self {
+        watch::take(active.len() * TREE_BYTES);
         let middle_of = |&row: &u32| {
             watch::look();
             middle(&supports.reach_box(row))

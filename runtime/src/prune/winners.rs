@@ -15,7 +15,7 @@
 //! from row to row are where it stands, as leaves and formulas are written, and rows that stand near each
 //! other have narrow hulls.
 
-use jbt_ir::{RowFunction, Tables};
+use jbt_ir::{RowFunction, Tables, watch};
 use jbt_lower::prune_info::ContestGroup;
 use jbt_model::combine::Extreme;
 
@@ -179,6 +179,7 @@ fn order(numbers: &[Vec<f32>], active: &[u32]) -> Vec<u32> {
         }
         morton(place)
     };
+    watch::take(2 * active.len() * size_of::<(u64, u32)>());
     let mut places: Vec<(u64, u32)> =
         active.iter().zip(0..).map(|(&row, position)| (code(row), position)).collect();
     scatter(|_| places.par_sort_unstable_by_key(|&place| place));

@@ -17,6 +17,7 @@ use crate::boxes::Box3;
 use crate::buffer::Layout;
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
+use crate::error::compiled_within_memory;
 use crate::evaluator::Evaluator;
 use crate::job::Job;
 use crate::kernel::Purpose;
@@ -64,6 +65,10 @@ pub fn from_rows(
     shape: &ModelShape,
     rows: &ModelRows,
 ) -> Result<ModelPart, RemoteError> {
+    compiled_within_memory(|| part_of(compiler, shape, rows))
+}
+
+fn part_of(compiler: &Compiler, shape: &ModelShape, rows: &ModelRows) -> Result<ModelPart, RemoteError> {
     if rows.shape != shape.fingerprint() {
         return Err(RemoteError::Shape { rows: rows.shape, shape: shape.fingerprint() });
     }
@@ -77,7 +82,7 @@ pub fn from_rows(
     // Nothing of the tree is looked at: all programs are there.
     let compiled = compiler.compile(&shape.tree);
     let tables = tables_of(&shape.ranges, rows, 0)?;
-    let function = shape.ranges.clone();
+    let function = shape.ranges.copied();
     let ranges = RangeFunction { function, tables, info: info(shape, rows) };
     let ranges = RangeProgram::new(compiler, ranges, None)?;
     let mut answers = Vec::with_capacity(shape.answers.len());
@@ -86,7 +91,7 @@ pub fn from_rows(
     let channels: Vec<AttributeGroup> = shape.tree.attributes().iter().map(channels).collect();
     for (index, (query, function)) in shape.answers.iter().enumerate() {
         let tables = tables_of(function, rows, 1 + index)?;
-        let kernel = compiler.kernel(function.clone(), Purpose::Answers(*query), None)?;
+        let kernel = compiler.kernel(function.copied(), Purpose::Answers(*query), None)?;
         let layout = Layout::new(*query, &channels);
         if layout.names() != kernel.function.function().outputs {
             return Err(RemoteError::Query { query: query.name().into_owned() });

@@ -6,7 +6,7 @@ use jbt_model::query::Query;
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::CompileError;
+use crate::error::{CompileError, compiled_within_memory};
 use crate::evaluator::Evaluator;
 use crate::prune::Pruner;
 use crate::solid::Solid;
@@ -55,7 +55,7 @@ impl Renderer {
     /// # Errors
     /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.tracer.compiled().updated(tree))
+        compiled_within_memory(|| Self::of(&self.tracer.compiled().updated(tree)))
     }
 
     /// The model.

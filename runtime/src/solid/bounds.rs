@@ -78,7 +78,7 @@ impl Solid {
     ///
     /// # Errors
     /// A region that is infinite, flat, not a number or not in order; none for an unbounded model; a
-    /// tolerance that is not finite and greater than 0.
+    /// tolerance that is not finite and greater than 0. Want of memory.
     pub fn tight_bounds(&self, region: Option<Box3>, tolerance: f32) -> Result<TightBounds, BoundsError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(BoundsError::Tolerance { tolerance });

@@ -107,7 +107,7 @@ impl Solid {
     /// called; the answers do not depend on them.
     ///
     /// # Errors
-    /// A distance or a point that is not finite, or a negative distance.
+    /// A distance or a point that is not finite, or a negative distance. Want of memory.
     pub fn memberships(&self, points: &Points, eps: f32) -> Result<Vec<Membership>, MembershipError> {
         if !(eps >= 0.0 && eps.is_finite()) {
             return Err(MembershipError::Distance { eps });

@@ -44,7 +44,7 @@ use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError, within_memory};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, compiled_within_memory, within_memory};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::support::{NoBox, around_in_f32};
@@ -132,7 +132,7 @@ impl Solid {
     /// # Errors
     /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.compiled.updated(tree))
+        compiled_within_memory(|| Self::of(&self.compiled.updated(tree)))
     }
 
     /// The model.
@@ -185,7 +185,7 @@ impl Solid {
     /// A leaf that is shared between parents at the same place may be named where it does not matter.
     ///
     /// # Errors
-    /// A box that is infinite, not a number, or not in order; it may be flat.
+    /// A box that is infinite, not a number, or not in order; it may be flat. Want of memory.
     pub fn owners_in(&self, bounds: Box3) -> Result<Vec<NodeId>, OwnersError> {
         if !bounds.is_proper() {
             return Err(OwnersError::Bounds { bounds });

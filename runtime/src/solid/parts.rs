@@ -20,7 +20,7 @@ use super::{Measure, MeasureError, Measures, RegionError, Solid};
 use crate::boxes::Box3;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{Classified, CompileError, ErrorKind, EvalError, within_memory};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError, compiled_within_memory, within_memory};
 use crate::evaluator::Evaluator;
 use crate::points::Points;
 use crate::polygonize::Fineness;
@@ -143,15 +143,16 @@ impl Classified for PartError {
     }
 }
 
-/// What the answer about a point takes: a list of a few parts.
-const MEMBERS_BYTES: usize = size_of::<Vec<usize>>() + 6 * size_of::<usize>();
-
 impl PartSolids {
     /// The solids of all parts; of a model without parts there are none.
     ///
     /// # Errors
     /// A part is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        compiled_within_memory(|| Self::of_all(compiler, tree))
+    }
+
+    fn of_all(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
         let solid = |(index, part): (usize, &jbt_model::check::PartRoot<'_>)| {
             Ok((part.name.to_owned(), Solid::new(compiler, &tree.part(index))?))
         };
@@ -200,7 +201,8 @@ impl PartSolids {
     }
 
     fn members_of(&self, points: &Points) -> Result<Vec<Vec<usize>>, EvalError> {
-        watch::take(points.len() * MEMBERS_BYTES);
+        let each = size_of::<Vec<usize>>() + (self.len().next_power_of_two() + 2) * size_of::<usize>();
+        watch::take(points.len() * each);
         let mut members = vec![Vec::new(); points.len()];
         for (part, (_, solid)) in self.solids.iter().enumerate() {
             let field: &Evaluator = solid.evaluator();

@@ -63,7 +63,7 @@ use crate::buffer::Layout;
 use crate::compiled::{Compiled, Task};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError, within_memory};
+use crate::error::{CompileError, EvalError, compiled_within_memory, within_memory};
 use crate::evaluator::Evaluator;
 use crate::prune::Region;
 
@@ -99,8 +99,8 @@ pub struct Tracer {
 
 brief_debug!(Tracer, "Tracer", this: engine = this.target.field.engine(), counters = this.counters());
 
-/// What is kept for a ray: its line, its answers, its place in a cell. An estimate.
-const RAY_BYTES: usize = size_of::<RayLine>() + 32;
+/// What is kept for a ray: its line, which may be sorted, its answers, its place in a cell. An estimate.
+const RAY_BYTES: usize = 2 * size_of::<RayLine>() + 32;
 
 /// The work of a tracer so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -156,7 +156,8 @@ impl Tracer {
     /// # Errors
     /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.compiled.updated(tree), self.target.full().query())
+        let query = self.target.full().query();
+        compiled_within_memory(|| Self::of(&self.compiled.updated(tree), query))
     }
 
     /// The compiled model.

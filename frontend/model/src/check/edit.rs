@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use jbt_ir::watch;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::arena::{CheckedNode, Lineage, NodeId};
@@ -89,10 +90,15 @@ impl CheckedModel {
     /// # Errors
     /// Those of [`Model::check`]; the model stays as it was.
     pub fn edit(&mut self, edited: &Model) -> Result<&CheckedTree, Diagnostics> {
-        match self.changes(edited) {
+        // A model that is half edited would be none.
+        let checked = watch::guarded(|| {
+            let Some(changes) = self.changes(edited) else { return Ok(None) };
+            watch::take(self.tree.nodes().len() * size_of::<CheckedNode>());
+            Ok::<_, Diagnostics>(Some((self.checked(edited, &changes)?, changes)))
+        })??;
+        match checked {
             None => *self = Self::new(edited)?,
-            Some(changes) => {
-                let tree = self.checked(edited, &changes)?;
+            Some((tree, changes)) => {
                 if let Some(names) = &mut self.names {
                     for (id, old, new) in &changes {
                         names.remove(&old.identity());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use jbt_ir::limits;
+use jbt_ir::{limits, watch};
 
 use super::arena::{CheckedNode, Lineage, NodeId, Paths, check_instances};
 use super::groups::widths;
@@ -162,9 +162,12 @@ impl CheckedTree {
     /// # Errors
     ///
     /// Unknown parameters, formulas without a value, and numbers that the [check](crate::check) refuses;
-    /// located if the tree came from a text.
+    /// located if the tree came from a text. Want of memory.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
-        self.with_settings(settings).map_err(|list| self.diagnostics(list))
+        watch::guarded(|| {
+            watch::take(self.nodes().len() * size_of::<CheckedNode>());
+            self.with_settings(settings).map_err(|list| self.diagnostics(list))
+        })?
     }
 
     fn with_settings(&self, settings: &[(&str, f64)]) -> Result<Self, Vec<Diagnostic>> {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DAffine3;
+use jbt_ir::watch;
 
 use super::arena::{CheckedNode, Children, Lineage, NodeId, Paths};
 use super::dependence::Dependence;
@@ -169,6 +170,7 @@ impl CheckedTree {
     pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
         let column = |place: usize| rows.map(|row| row[place]);
         let columns: [[f64; 3]; 4] = std::array::from_fn(column);
+        watch::take(self.nodes.len() * size_of::<CheckedNode>());
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
         let children = Children::from_slice(&[self.root()]);
@@ -222,6 +224,7 @@ impl CheckedTree {
     /// nodes counted once.
     #[must_use]
     pub fn support(&self) -> Bounds {
+        watch::take(self.nodes.len() * size_of::<Extent>());
         let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
         let mut children: Vec<Extent> = Vec::new();
         for node in &*self.nodes {

@@ -2,6 +2,7 @@
 
 use crate::entity::Table;
 use crate::op::Op;
+use crate::watch;
 
 use super::ops::{Chunk, WIDTH};
 use super::pairs::{FusedPair, MOST_OPERANDS};
@@ -162,6 +163,7 @@ impl Scratch {
     pub(super) fn reserve(&mut self, tape: &Tape) {
         let chunks = tape.block() / WIDTH * tape.stride();
         if self.file.len() < chunks {
+            watch::take(chunks * size_of::<Chunk>());
             self.file.resize(chunks, Chunk::ZERO);
         }
         if self.splats.len() < tape.splats {
