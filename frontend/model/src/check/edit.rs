@@ -93,7 +93,7 @@ impl CheckedModel {
         // A model that is half edited would be none.
         let checked = watch::guarded(|| {
             let Some(changes) = self.changes(edited) else { return Ok(None) };
-            watch::take(self.tree.nodes().len() * size_of::<CheckedNode>());
+            watch::take(size_of_val(self.tree.nodes()));
             Ok::<_, Diagnostics>(Some((self.checked(edited, &changes)?, changes)))
         })??;
         match checked {

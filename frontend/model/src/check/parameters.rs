@@ -165,7 +165,7 @@ impl CheckedTree {
     /// located if the tree came from a text. Want of memory.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
         watch::guarded(|| {
-            watch::take(self.nodes().len() * size_of::<CheckedNode>());
+            watch::take(size_of_val(self.nodes()));
             self.with_settings(settings).map_err(|list| self.diagnostics(list))
         })?
     }

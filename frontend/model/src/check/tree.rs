@@ -170,7 +170,7 @@ impl CheckedTree {
     pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
         let column = |place: usize| rows.map(|row| row[place]);
         let columns: [[f64; 3]; 4] = std::array::from_fn(column);
-        watch::take(self.nodes.len() * size_of::<CheckedNode>());
+        watch::take(size_of_val(&*self.nodes));
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
         let children = Children::from_slice(&[self.root()]);
