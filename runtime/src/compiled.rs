@@ -15,7 +15,6 @@ mod task;
 
 use std::sync::{Arc, OnceLock};
 
-use jbt_ir::pass::PASS_BYTES;
 use jbt_ir::{Selection, pass, watch};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedTree;
@@ -306,7 +305,7 @@ impl Compiled {
         lowering: Option<&Lowering<'t>>,
     ) -> Result<Option<Decisions>, CompileError> {
         let slopes = self.answers_of(PointScope::Regions, Query::GRADIENT, lowering)?;
-        watch::take(slopes.bound.kernel.lowered.values.len() * PASS_BYTES);
+        pass::take_for_pass(&slopes.bound.kernel.lowered);
         let Some(function) = pass::decisions(&slopes.bound.kernel.lowered) else { return Ok(None) };
         let make = |(), earlier: Option<&Arc<Kernel>>| {
             let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(Query::GRADIENT));

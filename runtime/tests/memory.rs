@@ -213,17 +213,17 @@ fn random(seed: u64) -> Work {
     ];
     steps.rotate_left(seed as usize % 6);
     Box::new(move || {
-        let unless_limit = |done: Done| match done {
+        let unless_refused = |done: Done| match done {
             Err((ErrorKind::Unbounded | ErrorKind::Argument | ErrorKind::Model, _)) => Ok(()),
             done => done,
         };
         let model = text::parse(written.as_bytes(), &text::Options::default());
         let tree = match classified(model.and_then(|model| model.check())) {
             Ok(tree) => tree,
-            Err(error) => return unless_limit(Err(error)),
+            Err(error) => return unless_refused(Err(error)),
         };
         let compiler = Compiler::new();
-        steps.iter().try_for_each(|step| unless_limit(step(&compiler, &tree)))
+        steps.iter().try_for_each(|step| unless_refused(step(&compiler, &tree)))
     })
 }
 

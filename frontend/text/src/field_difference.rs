@@ -17,6 +17,7 @@
 
 use std::collections::HashMap;
 
+use jbt_ir::watch;
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::{
     Combinator, CombinatorKind, Difference, Extreme, Intersection, OperatorForm, ReduceCode, Sum, Union,
@@ -50,7 +51,7 @@ pub fn field_difference(first: &CheckedTree, second: &CheckedTree) -> Option<Mod
     if first.iso().to_bits() != second.iso().to_bits() && trees.iter().any(|tree| asks_iso(tree)) {
         return None;
     }
-    jbt_ir::watch::take((first.nodes().len() + second.nodes().len()) * NODE_BYTES);
+    watch::take((first.nodes().len() + second.nodes().len()) * NODE_BYTES);
     let mut non_negative = HashMap::new();
     let [a, b] = trees.map(|tree| plain(tree, &mut non_negative));
     let hashes = [NodeHashes::new(&a), NodeHashes::new(&b)];

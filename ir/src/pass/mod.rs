@@ -118,7 +118,13 @@ pub const PIPELINE: &[Pass] = &[
 
 /// What a pass takes for a value of a function, with the function that it makes, unless that is longer: 100
 /// to 170 bytes were seen.
-pub const PASS_BYTES: usize = 200;
+const PASS_BYTES: usize = 200;
+
+/// Before a pass over a function: stops the work here if there is no memory for it. See [`watch::take`]. What
+/// a longer function takes besides is asked for by its builder.
+pub fn take_for_pass(function: &Function) {
+    watch::take(function.values.len() * PASS_BYTES);
+}
 
 /// Runs the passes in order. The observer sees each pass's name and what the pass made. The passes behind one
 /// that makes more than [`MAX_VALUES`] values do not run: what it made is no function any more, and the
@@ -130,7 +136,7 @@ pub fn run_pipeline<'a>(
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Function {
     for pass in passes {
-        watch::take(function.values.len() * PASS_BYTES);
+        take_for_pass(&function);
         function = (pass.run)(&function);
         observer(pass.name, &function);
         if function.values.len() > MAX_VALUES {

@@ -2,7 +2,6 @@
 
 use jbt_ir::domain::counting::{evaluations_per_row, of_selection};
 use jbt_ir::limits::MAX_VALUES;
-use jbt_ir::pass::PASS_BYTES;
 use jbt_ir::{Selection, pass, watch};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedNode;
@@ -121,7 +120,7 @@ impl Compiled {
             let Lowered { function, tables } = self.lowered(None, |lowering| lowering.answers(query))?;
             let shorter = [pass::fold_constants, pass::simplify, pass::share, pass::dce];
             let function = shorter.iter().fold(function, |function, pass| {
-                watch::take(function.values.len() * PASS_BYTES);
+                pass::take_for_pass(&function);
                 pass(&function)
             });
             let all = Selection::new(&function, &tables);

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use jbt_ir::domain::counting::{evaluations_per_row, of_selection, ops_per_row};
 use jbt_ir::engine::BoundProgram;
-use jbt_ir::pass::{PASS_BYTES, dce};
+use jbt_ir::pass::{dce, take_for_pass};
 use jbt_ir::{Function, Selection, Straight, Tables, Verified, watch};
 
 use super::engine::{CompiledFunction, Engine, Wish, compile};
@@ -61,7 +61,7 @@ impl Kernel {
             field.outputs.truncate(1);
             let body = field.body;
             field.blocks[body].results.truncate(1);
-            watch::take(field.values.len() * PASS_BYTES);
+            take_for_pass(&field);
             let field = dce(&field);
             let verified = optimise(field.clone(), Purpose::FiniteGradient, &mut |_, _| {}).ok()?;
             let CompiledFunction { engine, level, .. } = self.compiled;
