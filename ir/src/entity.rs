@@ -159,6 +159,11 @@ impl<K: Entity, V> Store<K, V> {
     pub fn values(&self) -> impl DoubleEndedIterator<Item = &V> {
         self.items.iter()
     }
+
+    /// Items, in order, to be changed.
+    pub fn values_mut(&mut self) -> impl DoubleEndedIterator<Item = &mut V> {
+        self.items.iter_mut()
+    }
 }
 
 impl<K: Entity, V> Default for Store<K, V> {

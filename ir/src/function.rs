@@ -219,7 +219,16 @@ impl Function {
     pub fn copied(&self) -> Self {
         let each = size_of::<InstData>() + size_of::<Inst>();
         watch::take(self.values.len() * size_of::<Type>() + self.insts.len() * each);
-        self.clone()
+        let mut insts = Store::new();
+        insts.reserve(self.insts.len());
+        for data in self.insts.values() {
+            watch::look();
+            insts.push(data.clone());
+        }
+        let Self { name, inputs, outputs, tables, values, insts: _, blocks, body } = self;
+        let (name, inputs, outputs) = (name.clone(), inputs.clone(), outputs.clone());
+        let (tables, values, blocks) = (Arc::clone(tables), values.clone(), blocks.clone());
+        Self { name, inputs, outputs, tables, values, insts, blocks, body: *body }
     }
 
     /// A function without instructions.

@@ -322,6 +322,15 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, NoMemory> {
     })
 }
 
+/// As [`guarded`] where nothing ends work for want of memory yet. Otherwise what does so goes on to, and
+/// answers for this work too: for small questions, of which larger work asks many.
+///
+/// # Errors
+/// Those of [`guarded`].
+pub fn guarded_once<T>(work: impl FnOnce() -> T) -> Result<T, NoMemory> {
+    if ACTIVE.with_borrow(|active| matches!(active, WorkEnd::Nothing)) { guarded(work) } else { Ok(work()) }
+}
+
 /// Does work that a look may end.
 fn ending<T>(active: WorkEnd, work: impl FnOnce() -> T) -> Result<T, Ended> {
     // What was there before may be gone.
@@ -360,6 +369,17 @@ mod tests {
         assert_eq!(asked.load(Ordering::Relaxed), 4);
         assert!(!Watches::present().may_stop(), "the watch is gone");
         (0..1000).for_each(|_| look());
+    }
+
+    #[test]
+    #[cfg_attr(miri, ignore = "there an allocation that fails ends the run")]
+    fn want_of_memory_ends_the_innermost_work_that_answers_for_it() {
+        const HUGE: usize = isize::MAX as usize;
+        let none = NoMemory { bytes: HUGE };
+        assert_eq!(guarded_once(|| take(HUGE)), Err(none));
+        assert_eq!(guarded(|| guarded(|| take(HUGE))), Ok(Err(none)));
+        assert_eq!(guarded(|| guarded_once(|| take(HUGE))), Err(none));
+        assert_eq!(guarded_once(|| 1), Ok(1));
     }
 
     #[test]

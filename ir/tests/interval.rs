@@ -53,7 +53,7 @@ struct Subject {
 
 impl Subject {
     fn new(name: String, function: &Function, tables: Tables) -> Self {
-        let emitted = (INTERVAL.run)(function);
+        let emitted = (INTERVAL.run)(function.clone());
         let final_ = run_pipeline(emitted.clone(), PIPELINE, &mut |_, _| {});
         let verified = |function: Function| match verify(function) {
             Ok(function) => function,
@@ -193,7 +193,7 @@ fn random_functions_with_everything_are_enclosed() {
     let mut checked = Checked::default();
     for seed in 0..400 * effort() {
         let function = random::function(seed, 10 + seed as usize % 50);
-        let function = if seed % 4 == 3 { (GRADIENT.run)(&function) } else { function };
+        let function = if seed % 4 == 3 { (GRADIENT.run)(function) } else { function };
         let tables = random::tables(&function, seed);
         let subject = Subject::new(format!("random function {seed}"), &function, tables);
         checked += check_boxes(&subject, &mut Rng::with_seed(seed), 8, 16);
@@ -334,7 +334,7 @@ fn finite_functions_and_their_gradients_are_enclosed() {
     let mut checked = Checked::default();
     for seed in 0..500 * effort() {
         let (function, tables) = tame(seed);
-        let function = if seed % 3 == 2 { (GRADIENT.run)(&function) } else { function };
+        let function = if seed % 3 == 2 { (GRADIENT.run)(function) } else { function };
         let subject = Subject::new(format!("finite function {seed}"), &function, tables);
         checked += check_boxes(&subject, &mut Rng::with_seed(seed), 16, 24);
     }

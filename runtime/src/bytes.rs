@@ -3,6 +3,8 @@
 //! What is read may be anybody's. A length is compared with the bytes that are left before memory is taken,
 //! and a reader says at which byte it stopped.
 
+use jbt_ir::memory::probe;
+
 use crate::error::{Classified, ErrorKind};
 
 /// Why bytes are not what they should be.
@@ -13,11 +15,13 @@ pub struct FormatError {
     pub at: usize,
     /// What is wrong.
     pub problem: String,
+    /// What has to change: the bytes are an argument; there may be no memory for what they hold.
+    pub kind: ErrorKind,
 }
 
 impl Classified for FormatError {
     fn kind(&self) -> ErrorKind {
-        ErrorKind::Argument
+        self.kind
     }
 }
 
@@ -101,7 +105,13 @@ impl<'a> ByteReader<'a> {
 
     /// An error here.
     pub(crate) fn error(&self, problem: impl Into<String>) -> FormatError {
-        FormatError { at: self.at, problem: problem.into() }
+        FormatError { at: self.at, problem: problem.into(), kind: ErrorKind::Argument }
+    }
+
+    /// What is read takes so many times the memory of the bytes: an error if it is not there.
+    pub(crate) fn afford(&self, times: usize) -> Result<(), FormatError> {
+        probe(self.bytes.len().saturating_mul(times))
+            .map_err(|error| FormatError { kind: ErrorKind::Limit, ..self.error(error.to_string()) })
     }
 
     /// Nothing may be left.
@@ -236,8 +246,17 @@ mod tests {
         let mut short = ByteReader::new(&bytes[..14], b"jbt test", 3).unwrap();
         assert_eq!(
             short.u32().unwrap_err(),
-            FormatError { at: 12, problem: "the bytes end too soon".into() }
+            FormatError { at: 12, problem: "the bytes end too soon".into(), kind: ErrorKind::Argument }
         );
+    }
+
+    #[test]
+    fn what_needs_more_memory_than_there_is_is_a_limit() {
+        let bytes = ByteWriter::new(b"jbt test", 3).into_bytes();
+        let reader = ByteReader::new(&bytes, b"jbt test", 3).unwrap();
+        assert_eq!(reader.afford(2), Ok(()));
+        assert_eq!(reader.afford(usize::MAX).unwrap_err().kind(), ErrorKind::Limit);
+        assert_eq!(reader.error("").kind(), ErrorKind::Argument);
     }
 
     /// The published test vectors.

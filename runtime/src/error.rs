@@ -174,6 +174,11 @@ pub(crate) fn within_memory<T, E: From<EvalError>>(work: impl FnOnce() -> Result
     watch::guarded(work).unwrap_or_else(|error| Err(EvalError::from(error).into()))
 }
 
+/// The same of small questions, of which larger work asks many: there it ends that work.
+pub(crate) fn once_within_memory<T>(work: impl FnOnce() -> Result<T, EvalError>) -> Result<T, EvalError> {
+    watch::guarded_once(work).unwrap_or_else(|error| Err(error.into()))
+}
+
 /// The same of work that compiles.
 pub(crate) fn compiled_within_memory<T, E: From<CompileError>>(
     work: impl FnOnce() -> Result<T, E>,

@@ -14,19 +14,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use fastrand::Rng;
+use jbt::boxes::Divisible;
 use jbt::build::{particles, point};
 use jbt::contour::{Detail, Plane, Rectangle, Slicer};
 use jbt::differing::differing_places;
+use jbt::divide::{Cell, Decision, Limits, divide};
 use jbt::export::{Format, write};
 use jbt::import::particles::ParticleOptions;
 use jbt::live::LiveSection;
-use jbt::mesh::Lattice;
+use jbt::mesh::{Lattice, LatticeBlock, MeshBlock, join_blocks};
 use jbt::render::Quality;
-use jbt::sample::{Sampler, Wanted};
+use jbt::sample::{Sampler, VdbField, VdbVolume, Wanted, write_vdb};
 use jbt::solid::{Measure, PartSolids};
 use jbt::{
     Box3, CheckedTree, Classified, Compiler, ErrorKind, Fineness, LiveContour, LiveMesh, Model, Points,
-    Polygonize, Query, Ray, Render, SceneFormat, Solid, Tracer, Tree, text,
+    Polygonize, Pruner, Query, Ray, Render, SceneFormat, Solid, Tracer, Tree, text,
 };
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::tree;
@@ -67,7 +69,7 @@ type Work = Box<dyn Fn() -> Done>;
 type Make = fn(bool) -> Work;
 
 /// Works by name, the megabytes that are enough for the large one, and how they are made.
-const WORKS: [(&str, usize, Make); 19] = [
+const WORKS: [(&str, usize, Make); 22] = [
     ("mesh", 180, mesh),
     ("mesh of particles", 100, mesh_of_particles),
     ("rows", 150, rows),
@@ -87,6 +89,9 @@ const WORKS: [(&str, usize, Make); 19] = [
     ("text", 140, nodes),
     ("table", 100, table),
     ("files", 100, files),
+    ("division", 80, division),
+    ("blocks of a mesh", 90, mesh_blocks),
+    ("grids", 220, grids),
 ];
 
 /// How it was done with so many bytes more than its inputs take, by a process of its own: whether there was an
@@ -446,5 +451,67 @@ fn table(small: bool) -> Work {
     Box::new(move || {
         let read = classified(SceneFormat::Csv.read("table.csv", file.as_bytes(), &options))?;
         told(read.model.check())
+    })
+}
+
+/// What a caller does with a pruner himself: he divides space in halves, as finely as he likes, divides it
+/// again after an edit, and keeps regions.
+fn division(small: bool) -> Work {
+    let (before, after) = (cloud(if small { 10 } else { 20_000 }), cloud(if small { 11 } else { 20_001 }));
+    let compiler = Compiler::new();
+    let [before, after] = [before, after].map(|tree| Pruner::new(&compiler, &tree).expect("it compiles"));
+    let edit = after.edit(&before);
+    let least = if small { 0.5 } else { 1.0 / 24.0 };
+    let halve = move |cell: &Cell<'_, Pruner>, (): &()| {
+        let bounds = cell.bounds();
+        if bounds.longest_side() <= least {
+            return Ok(Decision::Leaf);
+        }
+        let side = |axis: &usize| bounds.high[*axis] - bounds.low[*axis];
+        let axis = (0..3).max_by(|a, b| side(a).total_cmp(&side(b))).expect("three axes");
+        Ok(Decision::Split { axis, at: bounds.middle(axis), data: [(), ()] })
+    };
+    Box::new(move || {
+        let limits = Limits::default();
+        let divided = classified(divide(&before, Box3::new([0.0; 3], [1.0; 3]), (), &limits, &halve))?;
+        let renew = |region: &_| after.renewed(&before, region);
+        let again = classified(divided.redivide(&after, &edit, &renew, &limits, &halve))?;
+        let regions: Result<Vec<_>, _> = again.leaves().map(|(node, _)| after.region(node.bounds)).collect();
+        told(regions)
+    })
+}
+
+/// Blocks of a mesh, as bytes, become the mesh.
+fn mesh_blocks(small: bool) -> Work {
+    let (tree, settings) = (ball(), settings(if small { 16 } else { 600 }));
+    let lattice = settings.lattice(&tree).expect("a lattice");
+    let compiled = Compiler::new().compile(&tree);
+    let edge = if small { 32 } else { 64 };
+    let [x, y, z] = lattice.cells().map(|cells| cells.div_ceil(edge) as u32);
+    let places = (0..x * y * z).map(|index| [index % x, index / x % y, index / (x * y)]);
+    let block = |place| {
+        let block = LatticeBlock::new(&lattice, edge, place).expect("the block is there");
+        settings.block(&compiled, &lattice, block).run().expect("it is meshed").to_bytes()
+    };
+    let blocks: Vec<Vec<u8>> = places.map(block).collect();
+    Box::new(move || {
+        let read: Result<Vec<_>, _> = blocks.iter().map(|bytes| MeshBlock::from_bytes(bytes)).collect();
+        told(join_blocks(&classified(read)?))
+    })
+}
+
+/// Samples as files of OpenVDB.
+fn grids(small: bool) -> Work {
+    let (sampler, lattice) = (sampler(), lattice(if small { 8 } else { 150 }));
+    let blocks = sampler.blocks(&lattice, Wanted::Everywhere).run().expect("samples");
+    let names = sampler.evaluator().layout().names().to_vec();
+    Box::new(move || {
+        [VdbField::Fog, VdbField::LevelSet { iso: 0.5 }].into_iter().try_for_each(|field| {
+            let volume = VdbVolume { lattice: &lattice, origin: [0.0; 3], names: &names, field };
+            write_vdb(volume, &blocks, &mut sink()).map_err(|error| match error.kind() {
+                std::io::ErrorKind::OutOfMemory => (ErrorKind::Limit, error.to_string()),
+                _ => (ErrorKind::System, error.to_string()),
+            })
+        })
     })
 }

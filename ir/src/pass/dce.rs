@@ -13,7 +13,7 @@
 use crate::entity::{Entity, Inst, Store, Value, Values};
 use crate::function::{Function, InstKind};
 use crate::translate::renumber;
-use crate::watch::look;
+use crate::watch::{look, look_now};
 
 /// Where a value comes from.
 #[derive(Clone, Copy)]
@@ -27,36 +27,32 @@ enum ValueSource {
 
 /// The function without values that no output needs.
 #[must_use]
-pub fn dce(function: &Function) -> Function {
-    let needed = needed(function);
+pub fn dce(mut function: Function) -> Function {
+    let needed = needed(&function);
+    look_now();
     let keep = |value: Value| needed[value.index()];
 
-    let mut pruned = function.clone();
-    let mut removed = vec![false; function.insts.len()];
-    for (inst, data) in function.insts.iter() {
+    let Function { insts, blocks, .. } = &mut function;
+    let mut removed = vec![false; insts.len()];
+    for (removed, data) in removed.iter_mut().zip(insts.values_mut()) {
         look();
-        removed[inst.index()] = !data.results.iter().any(|&value| keep(value));
-        let InstKind::Fold(fold) = &data.kind else { continue };
+        *removed = !data.results.iter().any(|&value| keep(value));
+        let InstKind::Fold(fold) = &mut data.kind else { continue };
         let filter = |values: &[Value]| -> Values {
-            values
-                .iter()
-                .zip(&data.results)
-                .filter(|(_, result)| keep(**result))
-                .map(|(&value, _)| value)
-                .collect()
+            let kept = values.iter().zip(&data.results).filter(|(_, result)| keep(**result));
+            kept.map(|(&value, _)| value).collect()
         };
-        let body = &function.blocks[fold.body];
-        pruned.blocks[fold.body].params = filter(&body.params);
-        pruned.blocks[fold.body].results = filter(&body.results);
-        pruned.insts[inst].results = filter(&data.results).as_slice().into();
-        if let InstKind::Fold(pruned) = &mut pruned.insts[inst].kind {
-            pruned.initial = filter(&fold.initial);
-        }
+        let body = &mut blocks[fold.body];
+        body.params = filter(&body.params);
+        body.results = filter(&body.results);
+        fold.initial = filter(&fold.initial);
+        data.results.retain(|result| keep(*result));
     }
-    for block in function.blocks.keys() {
-        pruned.blocks[block].insts.retain(|inst| !removed[inst.index()]);
+    for block in blocks.values_mut() {
+        block.insts.retain(|inst| !removed[inst.index()]);
     }
-    renumber(&pruned)
+    look_now();
+    renumber(&function)
 }
 
 /// For each value, whether an output needs it. An accumulator inside its fold and its final value are needed
@@ -129,7 +125,7 @@ mod tests {
         let sum = b.add(x, x);
         let product = b.mul(x, y);
         let _unused = b.sqrt(product);
-        let function = dce(&b.finish(&[("out".into(), sum)]));
+        let function = dce(b.finish(&[("out".into(), sum)]));
         assert_eq!(function.insts.len(), 2);
         assert_eq!(function.values.len(), 2);
         assert_eq!(function.inputs.len(), 2, "the planes stay");
@@ -147,7 +143,7 @@ mod tests {
         let next =
             [b.add(acc[0], acc[2]), b.mul(acc[3], second), b.mul(acc[2], first), b.add(acc[1], second)];
         let sums = b.end_fold(&next);
-        let function = dce(&b.finish(&[("out".into(), sums[0])]));
+        let function = dce(b.finish(&[("out".into(), sums[0])]));
         let fold = function.insts.values().find_map(|data| match &data.kind {
             InstKind::Fold(fold) => Some((fold.clone(), data.results.len())),
             InstKind::Input(_)
@@ -172,7 +168,7 @@ mod tests {
         let column = b.column(table, 0);
         let next = b.op(Op::Add, &[acc[0], column]);
         b.end_fold(&[next]);
-        let function = dce(&b.finish(&[("out".into(), x)]));
+        let function = dce(b.finish(&[("out".into(), x)]));
         assert_eq!((function.insts.len(), function.blocks.len(), function.tables.len()), (1, 1, 1));
     }
 }

@@ -109,7 +109,7 @@ mod tests {
         let mut b = FunctionBuilder::new("test", &["x"]);
         let x = b.input(0);
         let result = write(&mut b, x);
-        let function = dce(&fold_constants(&b.finish(&[("out".into(), result)])));
+        let function = dce(fold_constants(&b.finish(&[("out".into(), result)])));
         let constant = function.insts.values().find_map(|data| match data.kind {
             InstKind::Constant(number) if data.results == function.blocks[function.body].results => {
                 Some(number)

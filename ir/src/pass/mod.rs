@@ -50,36 +50,36 @@ pub struct Pass {
     pub name: &'static str,
     /// What it does, in one sentence.
     pub what: &'static str,
-    /// Does it.
-    pub run: fn(&Function) -> Function,
+    /// Does it. What only removes or reorders instructions does it in place.
+    pub run: fn(Function) -> Function,
 }
 
 /// Runs before the others where the gradient is asked for.
 pub const GRADIENT: Pass = Pass {
     name: "gradient",
     what: "Adds the gradient of the first output, by forward differentiation.",
-    run: gradient,
+    run: |function| gradient(&function),
 };
 
 /// Replaces [`GRADIENT`] for points where [`GRADIENT`] gives a component that is not finite.
 pub const GUARDED_GRADIENT: Pass = Pass {
     name: "guarded-gradient",
     what: "Adds the gradient of the first output, finite whatever overflows on the way.",
-    run: guarded_gradient,
+    run: |function| guarded_gradient(&function),
 };
 
 /// Runs before the others, after the gradient, where ranges are asked for.
 pub const INTERVAL: Pass = Pass {
     name: "interval",
     what: "Replaces every input and output by a low and a high bound, by interval arithmetic.",
-    run: interval,
+    run: |function| interval(&function),
 };
 
 /// As [`INTERVAL`], for the function of one row ([`crate::alone`]).
 pub const ROW_INTERVAL: Pass = Pass {
     name: "row-interval",
     what: "Replaces the point and every output by a low and a high bound; numbers of the row stay numbers.",
-    run: row_interval,
+    run: |function| row_interval(&function),
 };
 
 /// Every pass that each function goes through, in order.
@@ -87,22 +87,22 @@ pub const PIPELINE: &[Pass] = &[
     Pass {
         name: "legalize",
         what: "Expands transcendentals into the ops that machines have, writes slopes out, drops `stop_gradient`.",
-        run: legalize,
+        run: |function| legalize(&function),
     },
     Pass {
         name: "constant-folding",
         what: "Computes ops on constants, and decides selections whose mask is known.",
-        run: fold_constants,
+        run: |function| fold_constants(&function),
     },
     Pass {
         name: "simplify",
         what: "Replaces ops by cheaper ones that give the same bits for every operand.",
-        run: simplify,
+        run: |function| simplify(&function),
     },
     Pass {
         name: "cse",
         what: "Shares equal instructions and moves what does not depend on the row out of the folds.",
-        run: share,
+        run: |function| share(&function),
     },
     Pass {
         name: "dce",
@@ -137,7 +137,9 @@ pub fn run_pipeline<'a>(
 ) -> Function {
     for pass in passes {
         take_for_pass(&function);
-        function = (pass.run)(&function);
+        function = (pass.run)(function);
+        // The function before is gone, which takes a while.
+        watch::look_now();
         observer(pass.name, &function);
         if function.values.len() > MAX_VALUES {
             break;

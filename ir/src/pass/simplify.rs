@@ -310,7 +310,7 @@ mod tests {
         let (x, y) = (b.input(0), b.input(1));
         let result = write(&mut b, x, y);
         let before = b.finish(&[("out".into(), result)]);
-        let after = dce(&simplify(&before));
+        let after = dce(simplify(&before));
         let count = after.insts.values().filter(|data| matches!(data.kind, InstKind::Op { .. })).count();
         let before = verify(before).expect("it obeys the rules");
         let after = verify(after).expect("it obeys the rules");

@@ -2,7 +2,8 @@
 
 use jbt_ir::domain::counting::{evaluations_per_row, of_selection};
 use jbt_ir::limits::MAX_VALUES;
-use jbt_ir::{Selection, pass, watch};
+use jbt_ir::pass::{PIPELINE, run_pipeline};
+use jbt_ir::{Selection, watch};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::check::CheckedNode;
 use jbt_model::diagnostic::Diagnostic;
@@ -118,11 +119,8 @@ impl Compiled {
     pub fn evaluations_per_point(&self, query: Query) -> Result<u64, CompileError> {
         watch::stoppable(|| {
             let Lowered { function, tables } = self.lowered(None, |lowering| lowering.answers(query))?;
-            let shorter = [pass::fold_constants, pass::simplify, pass::share, pass::dce];
-            let function = shorter.iter().fold(function, |function, pass| {
-                pass::take_for_pass(&function);
-                pass(&function)
-            });
+            let shorter = PIPELINE.iter().filter(|pass| !["legalize", "schedule"].contains(&pass.name));
+            let function = run_pipeline(function, shorter, &mut |_, _| {});
             let all = Selection::new(&function, &tables);
             Ok(of_selection(&evaluations_per_row(&function), &all))
         })?

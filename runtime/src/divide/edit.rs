@@ -2,6 +2,8 @@
 
 use std::sync::atomic::AtomicU64;
 
+use jbt_ir::watch;
+
 use super::decide::Decide;
 use super::node::{Division, Outcome};
 use super::run::{DivideError, DivisionRun, Limits, Previous, Subtree};
@@ -92,6 +94,18 @@ impl<R: Send + Sync, D: Clone + PartialEq + Send + Sync> Division<R, D> {
         limits: &Limits,
         decide: &Decide<'_, F, D>,
     ) -> Result<Self, DivideError<F::Error>> {
+        let work = || self.divided_again((field, renew), edit, limits, decide);
+        watch::guarded_once(work).unwrap_or_else(|error| Err(error.into()))
+    }
+
+    fn divided_again<F: Divisible<Region = R>>(
+        &self,
+        (field, renew): (&F, &(dyn Fn(&R) -> R + Sync)),
+        edit: &Edit,
+        limits: &Limits,
+        decide: &Decide<'_, F, D>,
+    ) -> Result<Self, DivideError<F::Error>> {
+        watch::take((self.nodes.len() + 1) * size_of::<u32>());
         let mut leaves = Vec::with_capacity(self.nodes.len() + 1);
         let mut count = 0;
         for node in &self.nodes {

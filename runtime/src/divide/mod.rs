@@ -36,6 +36,7 @@ pub use run::{DivideError, Limits};
 
 use std::sync::atomic::AtomicU64;
 
+use jbt_ir::watch;
 use run::DivisionRun;
 
 use crate::boxes::{Box3, Divisible};
@@ -70,8 +71,8 @@ use crate::boxes::{Box3, Divisible};
 ///
 /// # Errors
 /// A box that is not finite or not in order; a place that is not strictly inside its box; more boxes or depth
-/// than the limits allow, which is what becomes of a decider that never stops; and whatever the field or the
-/// decider report.
+/// than the limits allow, which is what becomes of a decider that never stops; want of memory; and whatever
+/// the field or the decider report.
 pub fn divide<F: Divisible, D: Send + Sync>(
     field: &F,
     bounds: Box3,
@@ -81,5 +82,5 @@ pub fn divide<F: Divisible, D: Send + Sync>(
 ) -> Result<Division<F::Region, D>, DivideError<F::Error>> {
     let run =
         DivisionRun { field, limits: limits.capped(), decide, boxes: AtomicU64::new(0), previous: None };
-    run.start(bounds, data)
+    watch::guarded_once(|| run.start(bounds, data)).unwrap_or_else(|error| Err(error.into()))
 }

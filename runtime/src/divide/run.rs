@@ -4,6 +4,7 @@ use std::error::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::parallel::*;
+use jbt_ir::memory::NoMemory;
 use jbt_ir::watch;
 use thiserror::Error;
 
@@ -73,6 +74,9 @@ pub enum DivideError<E: Error + 'static> {
         /// The limit.
         boxes: u64,
     },
+    /// The memory for the boxes is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The field could not be evaluated, or the decider gave up.
     #[error("the field cannot be evaluated")]
     Field(#[source] E),
@@ -82,7 +86,7 @@ impl Classified for DivideError<EvalError> {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Bounds { .. } | Self::Place { .. } => ErrorKind::Argument,
-            Self::Depth { .. } | Self::Boxes { .. } => ErrorKind::Limit,
+            Self::Depth { .. } | Self::Boxes { .. } | Self::Memory(_) => ErrorKind::Limit,
             Self::Field(error) => error.kind(),
         }
     }

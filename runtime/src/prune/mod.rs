@@ -51,7 +51,7 @@ use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range, wanted};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError, compiled_within_memory};
+use crate::error::{CompileError, EvalError, compiled_within_memory, once_within_memory};
 
 use cull::Boxes;
 use program::RangeProgram;
@@ -288,6 +288,38 @@ impl Pruner {
         Ok(())
     }
 
+    /// The region of a box.
+    fn region_of(&self, bounds: Box3) -> Result<Region, EvalError> {
+        let mut region = self.everywhere();
+        if region.rows() > MAX_RANGED_ROWS {
+            // Supports first: they tell of most rows, and ranges are computed of few rows only.
+            let RangeProgram { bound, contests, trees, .. } = &*self.program;
+            let mut winners = |table| {
+                let (positions, taken) = contests.winners(bound, table, &bounds)?;
+                self.counts.primitives.fetch_add(taken, Ordering::Relaxed);
+                Ok(positions)
+            };
+            let selection = trees.reaching(self.program.bounded_rows(), &bounds, &mut winners)?;
+            region = Region { bounds, selection: Arc::new(selection) };
+            if region.rows() > MAX_RANGED_ROWS && contests.is_empty() {
+                return Ok(region);
+            }
+        }
+        let mut parts = Vec::with_capacity(1);
+        self.narrowed(&region, &[bounds], &mut parts)?;
+        let region = parts.pop().expect("one box has one region");
+        self.program.trees.note(self.program.bound.all().len(), region.rows());
+        Ok(region)
+    }
+
+    /// Appends the regions of some parts of a region: see [`Divisible::narrow`].
+    fn narrowed(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
+        let probed = self.program.info.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
+        let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
+        self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)
+    }
+
     /// Appends the regions of the wanted ones of any number of parts of a region, by one run of the interval
     /// kernel: see [`Divisible::split`].
     fn divided(
@@ -358,26 +390,7 @@ impl Divisible for Pruner {
     type Region = Region;
 
     fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
-        let mut region = self.everywhere();
-        if region.rows() > MAX_RANGED_ROWS {
-            // Supports first: they tell of most rows, and ranges are computed of few rows only.
-            let RangeProgram { bound, contests, trees, .. } = &*self.program;
-            let mut winners = |table| {
-                let (positions, taken) = contests.winners(bound, table, &bounds)?;
-                self.counts.primitives.fetch_add(taken, Ordering::Relaxed);
-                Ok(positions)
-            };
-            let selection = trees.reaching(self.program.bounded_rows(), &bounds, &mut winners)?;
-            region = Region { bounds, selection: Arc::new(selection) };
-            if region.rows() > MAX_RANGED_ROWS && contests.is_empty() {
-                return Ok(region);
-            }
-        }
-        let mut parts = Vec::with_capacity(1);
-        self.narrow(&region, &[bounds], &mut parts)?;
-        let region = parts.pop().expect("one box has one region");
-        self.program.trees.note(self.program.bound.all().len(), region.rows());
-        Ok(region)
+        once_within_memory(|| self.region_of(bounds))
     }
 
     fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
@@ -385,7 +398,7 @@ impl Divisible for Pruner {
             ranges.fill(ANYTHING);
             return Ok(());
         }
-        let found = self.evaluate(&region.selection, boxes)?;
+        let found = once_within_memory(|| self.evaluate(&region.selection, boxes))?;
         for (lane, range) in ranges.iter_mut().enumerate() {
             *range = found.field(lane);
         }
@@ -393,10 +406,7 @@ impl Divisible for Pruner {
     }
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        let probed = self.program.info.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
-        let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
-        let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
-        self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)
+        once_within_memory(|| self.narrowed(region, boxes, parts))
     }
 
     fn split(
@@ -406,6 +416,6 @@ impl Divisible for Pruner {
         wants: &mut dyn FnMut(usize, Range) -> bool,
         parts: &mut Vec<Region>,
     ) -> Result<(), EvalError> {
-        self.divided(region, boxes, wants, parts)
+        once_within_memory(|| self.divided(region, boxes, wants, parts))
     }
 }

@@ -256,9 +256,10 @@ impl ModelRows {
     /// Reads rows. Whether they fit a shape, [`from_rows`](super::from_rows) checks.
     ///
     /// # Errors
-    /// Where the bytes are no rows of this version.
+    /// Where the bytes are no rows of this version; want of memory.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut reader = ByteReader::new(bytes, WORD, VERSION)?;
+        reader.afford(1)?;
         let (shape, uses) = (reader.u64()?, reader.u64()?);
         let mut sides = [0.0; 6];
         for side in &mut sides {

@@ -78,9 +78,11 @@ impl ModelShape {
     /// Reads a shape. Functions are verified, and everything that refers to a table, probe or value is there.
     ///
     /// # Errors
-    /// Where the bytes are no shape of this version.
+    /// Where the bytes are no shape of this version; want of memory.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut reader = ByteReader::new(bytes, WORD, VERSION)?;
+        // A value has twenty bytes of text, and takes some hundred to read and to verify.
+        reader.afford(16)?;
         let tree = header::read(&mut reader)?;
         let formulas = reader.flag()?;
         let ranges = function(&mut reader)?;

@@ -8,8 +8,10 @@
 //! The distance is that of the tangent: `(iso - field) / |gradient|`. Where the field jumps, or is level, it
 //! tells nothing; then neighbours on two sides are half a cell off the surface.
 
+use jbt_ir::watch;
+
 use super::block::Block;
-use super::leaf::{LEAF, VdbLeaf, VdbLeaves, VdbPlace, offset};
+use super::leaf::{LEAF, VdbLeaf, VdbLeaves, VdbPlace, leaf_at, offset};
 
 /// How far the band reaches to each side, in cells: as far as programs for level sets expect.
 const HALF_WIDTH: f64 = 3.0;
@@ -42,7 +44,7 @@ pub(super) fn band(blocks: &[Block], [field, x, y, z]: [usize; 4], iso: f32, spa
                 continue;
             }
             let index = block.index(at);
-            let leaf = band.entry(VdbPlace::around(index)).or_default();
+            let leaf = leaf_at(&mut band, VdbPlace::around(index));
             let offset = offset(index, LEAF);
             if is_inside {
                 leaf.inside.add(offset);
@@ -54,7 +56,7 @@ pub(super) fn band(blocks: &[Block], [field, x, y, z]: [usize; 4], iso: f32, spa
     }
     let half = (0.5 * spacing) as f32;
     for (index, distance) in apart(&band, blocks, half) {
-        let (leaf, offset) = (band.entry(VdbPlace::around(index)).or_default(), offset(index, LEAF));
+        let (leaf, offset) = (leaf_at(&mut band, VdbPlace::around(index)), offset(index, LEAF));
         if !leaf.active.has(offset) {
             leaf.put(offset, &[distance]);
         }
@@ -93,6 +95,7 @@ fn apart(band: &VdbLeaves, blocks: &[Block], half: f32) -> Vec<([u32; 3], f32)> 
                 let is_same = VdbPlace::around(index) == *place;
                 let other = if is_same { Some(leaf) } else { around[axis][usize::from(up)] };
                 if !other.is_some_and(|other| other.inside.has(offset(index, LEAF))) {
+                    watch::take_for(&found, 2);
                     found.push((here, -half));
                     found.push((index, half));
                 }

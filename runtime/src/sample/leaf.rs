@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use jbt_ir::watch;
+
 /// The binary logarithm of the points along a side of a leaf; then of children along a side of the nodes
 /// above.
 pub(super) const LEAF: u32 = 3;
@@ -10,6 +12,15 @@ pub(super) const UPPER: u32 = 5;
 
 /// The leaves that are not outside altogether, in the order of the file.
 pub(super) type VdbLeaves = BTreeMap<VdbPlace, VdbLeaf>;
+
+/// The leaf at a place, which is made if there is none.
+pub(super) fn leaf_at(leaves: &mut VdbLeaves, place: VdbPlace) -> &mut VdbLeaf {
+    leaves.entry(place).or_insert_with(|| {
+        // Nodes of the map are half full at least.
+        watch::take(2 * (size_of::<VdbPlace>() + size_of::<VdbLeaf>()));
+        VdbLeaf::default()
+    })
+}
 
 /// The points of a leaf: which are active, which are inside, and the values of the former, point by point; no
 /// values at all if none is active.
@@ -24,6 +35,7 @@ impl VdbLeaf {
     /// Makes a point active, and gives it these values.
     pub(super) fn put(&mut self, offset: usize, values: &[f32]) {
         self.active.add(offset);
+        watch::take_for(&self.values, 512 * values.len() - self.values.len());
         self.values.resize(512 * values.len(), 0.0);
         self.values[offset * values.len()..][..values.len()].copy_from_slice(values);
     }

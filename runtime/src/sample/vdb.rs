@@ -11,9 +11,12 @@
 
 use std::io::{self, Write};
 
+use jbt_ir::memory::NoMemory;
+use jbt_ir::watch;
+
 use super::band::{band, width};
 use super::block::Block;
-use super::leaf::{LEAF, LOWER, UPPER, VdbLeaf, VdbLeaves, VdbPlace, offset};
+use super::leaf::{LEAF, LOWER, LeafMask, UPPER, VdbLeaf, VdbLeaves, VdbPlace, leaf_at, offset};
 use crate::mesh::Lattice;
 
 /// " BDV", as a word of 64 bits.
@@ -58,8 +61,14 @@ pub struct VdbVolume<'a> {
 /// outside.
 ///
 /// # Errors
-/// Those of the writer; and `InvalidInput` if a level set is wanted and no planes have field and gradient.
+/// Those of the writer; `InvalidInput` if a level set is wanted and no planes have field and gradient; and
+/// `OutOfMemory`, where the error below it is a [`NoMemory`].
 pub fn write_vdb(volume: VdbVolume<'_>, blocks: &[Block], writer: &mut dyn Write) -> io::Result<()> {
+    watch::guarded(|| write_grids(volume, blocks, writer))
+        .unwrap_or_else(|error: NoMemory| Err(io::Error::new(io::ErrorKind::OutOfMemory, error)))
+}
+
+fn write_grids(volume: VdbVolume<'_>, blocks: &[Block], writer: &mut dyn Write) -> io::Result<()> {
     let (grids, band) = match volume.field {
         VdbField::Fog => (grids(volume.names), None),
         VdbField::LevelSet { iso } => {
@@ -158,6 +167,9 @@ impl VdbGrid {
         place: u64,
     ) -> Vec<u8> {
         let width = self.planes.len();
+        // Bytes grow by doubling; masks and values of a leaf, and its part of the topology.
+        let values: usize = leaves.values().map(|leaf| size_of_val(&*leaf.values)).sum();
+        watch::take(3 * (values + leaves.len() * size_of::<(VdbPlace, [LeafMask; 3])>()));
         let mut bytes = Vec::new();
         push_text(&mut bytes, &self.name);
         push_text(&mut bytes, if width == 1 { "Tree_float_5_4_3" } else { "Tree_vec3s_5_4_3" });
@@ -199,7 +211,7 @@ impl VdbGrid {
                 continue;
             }
             for at in block.places().filter(|&at| is_active(block, at)) {
-                self.put(leaves.entry(VdbPlace::around(block.index(at))).or_default(), block, at);
+                self.put(leaf_at(&mut leaves, VdbPlace::around(block.index(at))), block, at);
             }
         }
         leaves
@@ -218,7 +230,7 @@ impl VdbGrid {
                     _ => last.insert((place, others.get(&place))).1,
                 };
                 if other.is_some_and(|other| other.active.has(offset(index, LEAF))) {
-                    self.put(leaves.entry(place).or_default(), block, at);
+                    self.put(leaf_at(&mut leaves, place), block, at);
                 }
             }
         }

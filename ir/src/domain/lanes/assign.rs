@@ -14,7 +14,7 @@ use crate::function::InstKind;
 
 use super::place::ScratchPlace;
 use super::schedule::{Event, InstRange, Schedule};
-use crate::watch::look;
+use crate::watch::{look, look_now};
 
 /// The places of all values.
 pub(super) struct Places {
@@ -39,6 +39,7 @@ pub(super) fn assign(schedule: &Schedule<'_>) -> Places {
     assign_splats(schedule, &mut places);
     assign_registers(schedule, &classes, &mut places);
     for value in schedule.function.values.keys() {
+        look();
         places.places[value.index()] = places.places[schedule.holder[value.index()].index()];
     }
     places
@@ -109,7 +110,9 @@ fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Pla
     }
     let roots = schedule.function.values.keys().zip(hulls);
     let mut order: Vec<(InstRange, Value)> = roots.filter_map(|(root, hull)| Some((hull?, root))).collect();
+    look_now();
     order.sort_unstable_by_key(|&(range, value)| (range.start, value));
+    look_now();
 
     let mut free: BinaryHeap<Reverse<usize>> = BinaryHeap::new();
     let mut busy: BinaryHeap<Reverse<(usize, usize)>> = BinaryHeap::new();

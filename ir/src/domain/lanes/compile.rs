@@ -2,6 +2,7 @@
 
 use crate::entity::{Entity, Inst, Table, Value};
 use crate::function::{Function, InstKind};
+use crate::watch::{look, look_now};
 
 use super::assign::{Places, assign};
 use super::pairs::MOST_OPERANDS;
@@ -11,9 +12,12 @@ use super::tape::{Code, FoldStep, OpStep, Step, Tape};
 
 pub(super) fn compile(function: &Function) -> Tape {
     let schedule = Schedule::new(function);
+    look_now();
     let places = assign(&schedule);
+    look_now();
     let mut compiler = Compiler::new(function, places);
     for event in &schedule.events {
+        look();
         match *event {
             Event::Inst(inst) => {
                 let result = function.insts[inst].results[0];
@@ -76,7 +80,6 @@ impl<'a> Compiler<'a> {
 
     /// Writes an instruction, or the pair whose second instruction it is.
     fn inst(&mut self, inst: Inst, pair: Option<&Paired>) {
-        crate::watch::look();
         let data = &self.function.insts[inst];
         let result = self.place(data.results[0]);
         match &data.kind {

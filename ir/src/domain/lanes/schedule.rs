@@ -19,7 +19,7 @@ use crate::entity::{Entity, Inst, Value};
 use crate::function::{Fold, Function, InstKind};
 
 use super::pairs::{FusedPair, MOST_OPERANDS, find};
-use crate::watch::look;
+use crate::watch::{look, look_now};
 
 /// What happens at a position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -220,8 +220,10 @@ impl<'a> Pairing<'a> {
                 order.push(*event);
             }
         }
+        look_now();
         events.copy_from_slice(&order);
         for event in order {
+            look();
             if let Event::Inst(inst) = event {
                 self.writer[self.function.insts[inst].results[0].index()] = None;
             }
@@ -299,6 +301,7 @@ fn splats(function: &Function, holder: &[Value]) -> Vec<bool> {
     // By value: where those begin that it reaches.
     let mut starts = vec![0_u32; function.values.len() + 1];
     for (from, to) in &mut reaches {
+        look();
         (*from, *to) = (holder[from.index()], holder[to.index()]);
         starts[from.index() + 1] += 1;
     }

@@ -16,6 +16,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::graph::Graph;
+use crate::watch::look;
 
 /// Which of several nodes with equal growth comes first.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -59,11 +60,12 @@ pub(super) fn backward(graph: &Graph, tie: Tie) -> Vec<usize> {
         this.alive[node] = true;
     }
     for node in 0..graph.insts.len() {
+        look();
         this.offer(node);
     }
     let mut order = Vec::with_capacity(graph.insts.len());
     while let Some((_, _, _, node)) = this.heap.pop() {
-        crate::watch::look();
+        look();
         if !this.placed[node] {
             order.push(node);
             this.place(node);
@@ -77,6 +79,7 @@ pub(super) fn backward(graph: &Graph, tie: Tie) -> Vec<usize> {
 fn depths(graph: &Graph) -> Vec<usize> {
     let mut depths = vec![0; graph.weight.len()];
     for node in 0..graph.insts.len() {
+        look();
         depths[node] = graph.operands(node).iter().map(|&operand| depths[operand] + 1).max().unwrap_or(0);
     }
     depths

@@ -11,6 +11,7 @@
 use std::cmp::Reverse;
 
 use super::graph::Graph;
+use crate::watch::look;
 
 struct DepthFirst<'a> {
     graph: &'a Graph,
@@ -30,6 +31,7 @@ pub(super) fn depth_first(graph: &Graph) -> Vec<usize> {
         order: Vec::with_capacity(nodes),
     };
     for node in 0..nodes {
+        look();
         let operands = this.by_need(graph.operands(node));
         let most = operands.iter().enumerate().map(|(before, &operand)| this.need[operand] + before).max();
         // A fold keeps what it reads while its body runs.
@@ -60,7 +62,7 @@ impl DepthFirst<'_> {
     fn place(&mut self, root: usize) {
         let mut stack = vec![(root, self.by_need(self.graph.operands(root)).into_iter())];
         while let Some((node, operands)) = stack.last_mut() {
-            crate::watch::look();
+            look();
             let node = *node;
             if self.placed[node] {
                 stack.pop();

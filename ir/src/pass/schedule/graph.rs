@@ -3,6 +3,7 @@
 use crate::entity::{Block, Entity, Inst, Value};
 use crate::function::{Function, InstKind};
 use crate::pass::liveness::Uses;
+use crate::watch::look;
 
 /// Lists of nodes, by node, in one allocation.
 struct Lists {
@@ -39,7 +40,7 @@ impl Graph {
         let insts = data.insts.clone();
         let mut weight: Vec<usize> = insts.iter().map(|&inst| function.insts[inst].results.len()).collect();
         for (position, &inst) in insts.iter().enumerate() {
-            crate::watch::look();
+            look();
             for value in &function.insts[inst].results {
                 node[value.index()] = position;
             }
@@ -63,7 +64,7 @@ impl Graph {
         };
         let mut operands = Lists { starts: vec![0], items: Vec::new() };
         for (position, &inst) in insts.iter().enumerate() {
-            crate::watch::look();
+            look();
             let (initial, captured) = uses.of(function, inst);
             list(position, initial, &mut operands.items);
             list(position, captured, &mut operands.items);
@@ -119,6 +120,7 @@ fn reversed(lists: &Lists) -> Lists {
     let mut next = starts.clone();
     let mut items = vec![0; lists.items.len()];
     for node in 0..nodes {
+        look();
         for &item in lists.get(node) {
             items[next[item]] = node;
             next[item] += 1;

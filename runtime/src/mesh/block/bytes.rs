@@ -48,9 +48,11 @@ impl MeshBlock {
     /// Reads a block.
     ///
     /// # Errors
-    /// Where the bytes are no block of this version, or its numbers do not go together.
+    /// Where the bytes are no block of this version, or its numbers do not go together; want of memory.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut reader = ByteReader::new(bytes, WORD, VERSION)?;
+        // Lists, and what is made of them.
+        reader.afford(2)?;
         let place = [reader.u32()?, reader.u32()?, reader.u32()?];
         let origin = [reader.f64()?, reader.f64()?, reader.f64()?];
         let up = reader.one_of(&[ModelUp::Y, ModelUp::Z])?;

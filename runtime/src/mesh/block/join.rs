@@ -1,5 +1,6 @@
 //! Blocks become one mesh: vertices in the order of blocks, and names become their numbers.
 
+use jbt_ir::memory::{self, NoMemory};
 use rustc_hash::FxHashMap;
 
 use super::super::indexed::{Attribute, Creases, Mesh};
@@ -39,6 +40,9 @@ pub enum BlockError {
         /// What is wrong.
         problem: &'static str,
     },
+    /// The memory for the mesh is not to be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// More vertices than a u32 can number.
     #[error("the mesh would have {vertices} vertices, more than can be numbered in 32 bits")]
     TooManyVertices {
@@ -53,7 +57,7 @@ impl Classified for BlockError {
             Self::Missing { .. } | Self::Twice { .. } | Self::Model { .. } | Self::Broken { .. } => {
                 ErrorKind::Argument
             }
-            Self::TooManyVertices { .. } => ErrorKind::Limit,
+            Self::TooManyVertices { .. } | Self::Memory(_) => ErrorKind::Limit,
         }
     }
 }
@@ -117,6 +121,7 @@ pub fn join_blocks(blocks: &[MeshBlock]) -> Result<Mesh, BlockError> {
         return Err(BlockError::TooManyVertices { vertices });
     }
     let Some(&model) = order.first() else { return Ok(Mesh::default()) };
+    memory::probe(order.iter().map(|block| joined_bytes(block)).sum())?;
     let mut names: FxHashMap<VertexName, u32> = FxHashMap::default();
     let mut mesh = begun(&model.mesh, vertices as usize, &order);
     for block in &order {
@@ -143,6 +148,18 @@ pub fn join_blocks(blocks: &[MeshBlock]) -> Result<Mesh, BlockError> {
         crease(&mut mesh, block, (first, triangles))?;
     }
     Ok(mesh)
+}
+
+/// The memory that a block takes in a mesh, and for its names on the way.
+fn joined_bytes(block: &MeshBlock) -> usize {
+    let MeshBlock { mesh, below, corners, seams, .. } = block;
+    let values = |all: &[Attribute]| all.iter().map(|one| size_of_val(&*one.values)).sum::<usize>();
+    let Creases { vertices, normals, attributes, .. } = &mesh.creases;
+    // Lists of creases grow by doubling, and a map is half empty.
+    let sides = size_of_val(&**vertices) + size_of_val(&**normals) + size_of_val(&**corners);
+    let sides = sides + attributes.iter().map(|plane| size_of_val(&**plane)).sum::<usize>();
+    let lists = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.triangles);
+    lists + values(&mesh.attributes) + 3 * sides + 4 * size_of_val(&**seams) + size_of_val(&**below)
 }
 
 /// Adds the creases of a block whose vertices and triangles come behind so many. The sides of all vertices
