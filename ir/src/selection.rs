@@ -326,6 +326,7 @@ impl Selection {
     #[must_use]
     pub fn shifted(&self, extent: &Arc<Extent>, shifts: &[Shift]) -> Self {
         assert_eq!(extent.parents, self.extent.parents, "rows stay under their rows");
+        watch::take(size_of_val(&*self.words));
         let mut result = Self { extent: Arc::clone(extent), ..self.clone() };
         for ((span, shift), &count) in self.spans.iter().zip(shifts).zip(&extent.counts) {
             for row in &mut result.words[span.active as usize..span.end as usize] {
@@ -352,6 +353,7 @@ impl Selection {
             let starts = active - parents.len();
             for (position, (parent, place)) in parents.into_iter().enumerate() {
                 let all = rows.range(parent as usize);
+                watch::take_for(&result.words, all.len());
                 match place {
                     None => result.words.extend_from_slice(all),
                     Some(place) => {
@@ -377,6 +379,9 @@ impl Selection {
     /// here.
     fn places(&self, other: &Self, table: Table) -> Vec<(u32, Option<usize>)> {
         let Some(parent) = self.extent.parents[table.index()] else { return vec![(0, Some(0))] };
+        // Half of a map is empty.
+        let [mine, others] = [self, other].map(|selection| selection.active(parent).len());
+        watch::take(mine * 2 * size_of::<(u32, usize)>() + others * size_of::<(u32, Option<usize>)>());
         let here: HashMap<u32, usize> =
             self.active(parent).iter().enumerate().map(|(position, &row)| (row, position)).collect();
         other.active(parent).iter().map(|row| (*row, here.get(row).copied())).collect()

@@ -7,6 +7,7 @@
 //!     look()             in inner loops: costs a decrement, and asks the watch every few milliseconds
 //!     take(bytes)        before memory is asked for: costs a subtraction, and stops if it is not to be had
 //!     Watches::present().hold(task)   a part of the work that another thread does
+//! guarded(work)          Err(NoMemory) if a `take` found too little; guarded_once: if nobody around answers
 //!   go_on()?             outside of compiling: an error, for whoever has errors to answer
 //! ```
 //!
@@ -322,8 +323,8 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, NoMemory> {
     })
 }
 
-/// As [`guarded`] where nothing ends work for want of memory yet. Otherwise what does so goes on to, and
-/// answers for this work too: for small questions, of which larger work asks many.
+/// As [`guarded`], unless work around this one already ends for want of memory: then that answers for this
+/// one too. For small questions, of which larger work asks many.
 ///
 /// # Errors
 /// Those of [`guarded`].

@@ -3,19 +3,20 @@
 //! What is read may be anybody's. A length is compared with the bytes that are left before memory is taken,
 //! and a reader says at which byte it stopped.
 
-use jbt_ir::memory::probe;
+use jbt_ir::memory::{NoMemory, probe, room};
 
 use crate::error::{Classified, ErrorKind};
 
 /// Why bytes are not what they should be.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[non_exhaustive]
 #[error("byte {at}: {problem}")]
 pub struct FormatError {
     /// Where.
     pub at: usize,
     /// What is wrong.
     pub problem: String,
-    /// What has to change: the bytes are an argument; there may be no memory for what they hold.
+    /// `Argument`: the bytes are wrong. `Limit`: there is no memory for what they hold.
     pub kind: ErrorKind,
 }
 
@@ -110,8 +111,11 @@ impl<'a> ByteReader<'a> {
 
     /// What is read takes so many times the memory of the bytes: an error if it is not there.
     pub(crate) fn afford(&self, times: usize) -> Result<(), FormatError> {
-        probe(self.bytes.len().saturating_mul(times))
-            .map_err(|error| FormatError { kind: ErrorKind::Limit, ..self.error(error.to_string()) })
+        probe(self.bytes.len().saturating_mul(times)).map_err(|error| self.no_memory(error))
+    }
+
+    fn no_memory(&self, error: NoMemory) -> FormatError {
+        FormatError { kind: ErrorKind::Limit, ..self.error(error.to_string()) }
     }
 
     /// Nothing may be left.
@@ -188,18 +192,25 @@ impl<'a> ByteReader<'a> {
         std::str::from_utf8(bytes).map_err(|_| self.error("the text is no UTF-8"))
     }
 
-    fn words(&mut self) -> Result<impl Iterator<Item = u32> + use<'a>, FormatError> {
-        let count = self.count(4)?;
+    /// A number of things that take at least so many bytes each, and room for them.
+    pub(crate) fn list<T>(&mut self, bytes: usize) -> Result<(usize, Vec<T>), FormatError> {
+        let count = self.count(bytes)?;
+        Ok((count, room(count).map_err(|error| self.no_memory(error))?))
+    }
+
+    fn words<T>(&mut self, of: impl Fn(u32) -> T) -> Result<Vec<T>, FormatError> {
+        let (count, mut words) = self.list(4)?;
         let bytes = self.take(4 * count)?;
-        Ok(bytes.as_chunks().0.iter().map(|&word| u32::from_le_bytes(word)))
+        words.extend(bytes.as_chunks().0.iter().map(|&word| of(u32::from_le_bytes(word))));
+        Ok(words)
     }
 
     pub(crate) fn u32s(&mut self) -> Result<Vec<u32>, FormatError> {
-        Ok(self.words()?.collect())
+        self.words(|word| word)
     }
 
     pub(crate) fn f32s(&mut self) -> Result<Vec<f32>, FormatError> {
-        Ok(self.words()?.map(f32::from_bits).collect())
+        self.words(f32::from_bits)
     }
 }
 

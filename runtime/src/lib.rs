@@ -106,9 +106,9 @@
 //! `Send + Sync + 'static` and go into `Box<dyn Error>`; none is a panic, whatever a file says.
 //!
 //! Memory that is not to be had is an error as well, wherever its size follows the size of an input, and as
-//! long as some megabytes are left for small parts. The exceptions are checks of triangles and
-//! [`LiveMesh::compact`](live::LiveMesh::compact). Programs that are built with `panic = "abort"` are told of
-//! large vectors alone.
+//! long as some megabytes are left for small parts. What has no error cannot tell of it: checks of triangles,
+//! copies of what is there in another form or as bytes, where two models differ ([`Pruner::edit`]). Programs
+//! that are built with `panic = "abort"` are told of large vectors alone.
 //!
 //! # What later versions may add
 //!

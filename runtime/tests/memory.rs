@@ -23,6 +23,7 @@ use jbt::export::{Format, write};
 use jbt::import::particles::ParticleOptions;
 use jbt::live::LiveSection;
 use jbt::mesh::{Lattice, LatticeBlock, MeshBlock, join_blocks};
+use jbt::remote::{ModelRows, RowSource};
 use jbt::render::Quality;
 use jbt::sample::{Sampler, VdbField, VdbVolume, Wanted, write_vdb};
 use jbt::solid::{Measure, PartSolids};
@@ -69,7 +70,7 @@ type Work = Box<dyn Fn() -> Done>;
 type Make = fn(bool) -> Work;
 
 /// Works by name, the megabytes that are enough for the large one, and how they are made.
-const WORKS: [(&str, usize, Make); 22] = [
+const WORKS: [(&str, usize, Make); 23] = [
     ("mesh", 180, mesh),
     ("mesh of particles", 100, mesh_of_particles),
     ("rows", 150, rows),
@@ -89,9 +90,10 @@ const WORKS: [(&str, usize, Make); 22] = [
     ("text", 140, nodes),
     ("table", 100, table),
     ("files", 100, files),
-    ("division", 80, division),
-    ("blocks of a mesh", 90, mesh_blocks),
-    ("grids", 220, grids),
+    ("division", 60, division),
+    ("blocks of a mesh", 80, mesh_blocks),
+    ("grids", 110, grids),
+    ("distributed rows", 70, distributed),
 ];
 
 /// How it was done with so many bytes more than its inputs take, by a process of its own: whether there was an
@@ -457,7 +459,14 @@ fn table(small: bool) -> Work {
 /// What a caller does with a pruner himself: he divides space in halves, as finely as he likes, divides it
 /// again after an edit, and keeps regions.
 fn division(small: bool) -> Work {
-    let (before, after) = (cloud(if small { 10 } else { 20_000 }), cloud(if small { 11 } else { 20_001 }));
+    let count = if small { 10 } else { 20_000 };
+    let balls = |count: usize| {
+        let mut rng = Rng::with_seed(1);
+        let places: Vec<[f32; 3]> = (0..count).map(|_| std::array::from_fn(|_| rng.f32())).collect();
+        Model::new(particles(places, vec![0.05; count])).check().expect("a good model")
+    };
+    // One ball more: most of the division is copied, with other numbers of rows.
+    let (before, after) = (balls(count), balls(count + 1));
     let compiler = Compiler::new();
     let [before, after] = [before, after].map(|tree| Pruner::new(&compiler, &tree).expect("it compiles"));
     let edit = after.edit(&before);
@@ -497,6 +506,20 @@ fn mesh_blocks(small: bool) -> Work {
     Box::new(move || {
         let read: Result<Vec<_>, _> = blocks.iter().map(|bytes| MeshBlock::from_bytes(bytes)).collect();
         told(join_blocks(&classified(read)?))
+    })
+}
+
+/// Rows of a whole model for another process, and what that one reads.
+fn distributed(small: bool) -> Work {
+    let tree = cloud(if small { 10 } else { 200_000 });
+    let queries = [Query::FIELD, Query::GRADIENT];
+    let source = move |tree: &CheckedTree| RowSource::new(&Compiler::new().compile(tree), &queries);
+    let all = Box3::new([-1.0; 3], [2.0; 3]);
+    let sent = source(&tree).and_then(|source| source.rows(all)).expect("a good model").to_bytes();
+    Box::new(move || {
+        let source = classified(source(&tree))?;
+        told(source.rows(all))?;
+        told(ModelRows::from_bytes(&sent))
     })
 }
 

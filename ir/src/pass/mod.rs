@@ -50,7 +50,7 @@ pub struct Pass {
     pub name: &'static str,
     /// What it does, in one sentence.
     pub what: &'static str,
-    /// Does it. What only removes or reorders instructions does it in place.
+    /// Does it.
     pub run: fn(Function) -> Function,
 }
 

@@ -32,7 +32,11 @@ impl Edit {
     pub(crate) fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Boxes(boxes), Self::Boxes(others)) if boxes == others => Self::Boxes(boxes),
-            (Self::Boxes(boxes), Self::Boxes(others)) => Self::Boxes([boxes, others].concat()),
+            (Self::Boxes(mut boxes), Self::Boxes(others)) => {
+                watch::take_for(&boxes, others.len());
+                boxes.extend(others);
+                Self::Boxes(boxes)
+            }
             (Self::Everywhere, _) | (_, Self::Everywhere) => Self::Everywhere,
         }
     }
@@ -55,6 +59,7 @@ impl<R: Sync, D: Clone + PartialEq + Sync> Previous<R, D> for Before<'_, R, D> {
             return None;
         }
         let [first, end] = [node, node + nodes.len()].map(|node| self.leaves[node] as usize);
+        watch::take(size_of_val(nodes) + (end - first) * size_of::<R>());
         let regions = self.division.regions[first..end].iter().map(self.renew).collect();
         Some(Subtree { nodes: nodes.to_vec(), regions })
     }

@@ -69,6 +69,8 @@ use crate::boxes::{Box3, Divisible};
 /// assert!(halves.leaves().all(|(node, _)| node.range.unwrap()[0] < 0.5));
 /// ```
 ///
+/// Where there is no memory, the stack is unwound through `decide`: what it locks then is poisoned.
+///
 /// # Errors
 /// A box that is not finite or not in order; a place that is not strictly inside its box; more boxes or depth
 /// than the limits allow, which is what becomes of a decider that never stops; want of memory; and whatever

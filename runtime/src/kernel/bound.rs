@@ -63,7 +63,7 @@ impl Kernel {
             field.blocks[body].results.truncate(1);
             take_for_pass(&field);
             let field = dce(field);
-            let verified = optimise(field.clone(), Purpose::FiniteGradient, &mut |_, _| {}).ok()?;
+            let verified = optimise(field.copied(), Purpose::FiniteGradient, &mut |_, _| {}).ok()?;
             let CompiledFunction { engine, level, .. } = self.compiled;
             let wish = Wish { engine: Some(engine.for_few()), level: Some(level) };
             Self::new(field, None, verified, wish).ok().map(Arc::new)

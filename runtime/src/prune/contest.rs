@@ -168,6 +168,7 @@ impl Contests {
                             other.get_or_init(|| RowRanges::new(&self.compiler, lowered, &difference.other));
                         made.as_ref()
                     };
+                    watch::take(entered.iter().map(|rows| size_of_val(&**rows)).sum());
                     let wanted: Vec<RowInBox> = entered.concat();
                     let mut limit =
                         DifferenceLimit::new((contest, difference, info.iso2), selection, &firsts);

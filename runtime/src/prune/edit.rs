@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use jbt_ir::selection::Shift;
-use jbt_ir::{Rows, Table, Tables};
+use jbt_ir::{Rows, Table, Tables, watch};
 use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
 use super::cull::around;
@@ -100,6 +100,7 @@ impl Pruner {
         let changed = |row: &usize| !in_place || !same_numbers(old, new, *row);
         for (pruner, rows) in [(before, change.before.clone()), (self, change.now)] {
             for row in rows.filter(changed).filter(|&row| pruner.runs(table, row)) {
+                watch::take_for(boxes, 1);
                 boxes.push(pruner.reach_of(table, row)?);
             }
         }
@@ -116,6 +117,7 @@ impl Pruner {
             return Some(());
         }
         for row in 0..self.tables().tables[table].len() {
+            watch::take_for(boxes, 1);
             match [before, self].map(|pruner| pruner.is_active(table, row)) {
                 [true, false] => boxes.push(before.reach_of(table, row)?),
                 [false, true] => boxes.push(self.reach_of(table, row)?),

@@ -15,7 +15,7 @@
 //! may leave out rows in one box: `most` comes either from a, and then those of b that go never cut, or from
 //! b, and then those of b that go are never the largest.
 
-use jbt_ir::{Entity as _, Selection, Table};
+use jbt_ir::{Entity as _, Selection, Table, watch};
 use jbt_lower::prune_info::{ContestDifference, DifferenceSide, RowContest};
 use jbt_model::combine::Extreme;
 use rustc_hash::FxHashMap as HashMap;
@@ -74,6 +74,8 @@ impl<'a> DifferenceLimit<'a> {
         probes: Option<ProbeRanges<'_>>,
         ranges: impl FnOnce() -> Option<&'b RowRanges>,
     ) -> Result<u64, EvalError> {
+        // Lists and maps of who is asked, at most one for each row; half of a map is empty.
+        watch::take(rows.len() * (size_of::<RowInBox>() + 6 * size_of::<((u8, u32), usize)>()));
         let mut asked: Vec<(u8, u32)> = rows.iter().map(|row| (row.part, row.owner)).collect();
         asked.sort_unstable();
         asked.dedup();

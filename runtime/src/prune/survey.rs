@@ -6,9 +6,11 @@
 //!                              rows that matter, by supports and by the same probes    no second run
 //! ```
 
+use jbt_ir::watch;
+
 use super::{MAX_RANGED_ROWS, Pruner, Region};
 use crate::boxes::{ANYTHING, Box3, Range};
-use crate::error::EvalError;
+use crate::error::{EvalError, once_within_memory};
 
 impl Pruner {
     /// The ranges of the field in any number of proper boxes inside a region, and the regions of the boxes
@@ -26,6 +28,17 @@ impl Pruner {
         boxes: &[Box3],
         wanted: &dyn Fn(Range) -> bool,
     ) -> Result<Vec<(Range, Option<Region>)>, EvalError> {
+        once_within_memory(|| self.surveyed(region, boxes, wanted))
+    }
+
+    fn surveyed(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wanted: &dyn Fn(Range) -> bool,
+    ) -> Result<Vec<(Range, Option<Region>)>, EvalError> {
+        let each = size_of::<(Range, Option<Region>)>() + 2 * size_of::<(usize, Box3)>();
+        watch::take(boxes.len() * each);
         let mut found: Vec<(Range, Option<Region>)> = Vec::with_capacity(boxes.len());
         let mut chosen = Vec::new();
         let mut wants = |index: usize, range: Range| {

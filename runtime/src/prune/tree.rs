@@ -128,6 +128,7 @@ impl RowTree {
                 open.extend(self.children(level, index).map(|child| (level - 1, child)));
                 continue;
             }
+            watch::take_for(&found, self.rows(index).len());
             found.extend(self.rows(index).iter().filter(|&&position| reaches(position)));
             if found.len() > most {
                 return None;

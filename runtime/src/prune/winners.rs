@@ -96,6 +96,8 @@ impl WinnerTree {
         (extreme, start): (Extreme, Option<f32>),
     ) -> Result<(Option<Vec<u32>>, u64), EvalError> {
         let most = self.order.len() / (2 * ROWS);
+        // Who is open, and the range of each.
+        watch::take(most * CHILDREN * size_of::<(usize, [f32; 2])>());
         let mut best = start.unwrap_or(f32::NEG_INFINITY);
         let mut open: Vec<usize> = (0..self.levels[self.levels.len() - 1][0].len()).collect();
         let mut evaluations = 0;

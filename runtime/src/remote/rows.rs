@@ -1,6 +1,6 @@
 //! Rows of a model that reach a box.
 
-use jbt_ir::{Entity as _, Selection, Table, Tables};
+use jbt_ir::{Entity as _, Selection, Table, Tables, watch};
 use jbt_lower::prune_info::{Rule, Support};
 use jbt_lower::{Lowered, Lowering};
 use jbt_model::kind::NodeKind;
@@ -11,7 +11,7 @@ use super::shape::ModelShape;
 use crate::boxes::{Box3, Divisible as _};
 use crate::bytes::{ByteReader, ByteWriter, FormatError};
 use crate::compiled::Compiled;
-use crate::error::CompileError;
+use crate::error::{CompileError, compiled_within_memory, within_memory};
 use crate::parallel::PoolWorkers;
 use crate::prune::Pruner;
 
@@ -74,8 +74,12 @@ impl RowSource {
     /// [surface](Query::SURFACE).
     ///
     /// # Errors
-    /// The model could not be lowered, or its range program not be compiled.
+    /// The model could not be lowered, or its range program not be compiled; want of memory.
     pub fn new(compiled: &Compiled, queries: &[Query]) -> Result<Self, RemoteError> {
+        compiled_within_memory(|| Self::of(compiled, queries))
+    }
+
+    fn of(compiled: &Compiled, queries: &[Query]) -> Result<Self, RemoteError> {
         let pruner = compiled.pruner()?;
         let tree = compiled.tree();
         let lowering = Lowering::with(tree, &PoolWorkers);
@@ -101,8 +105,12 @@ impl RowSource {
     /// The rows that matter in a closed box, in coordinates about the model's origin.
     ///
     /// # Errors
-    /// The engine refuses the box: a defect.
+    /// Want of memory; the engine refuses the box, which is a defect.
     pub fn rows(&self, bounds: Box3) -> Result<ModelRows, RemoteError> {
+        within_memory(|| self.rows_in(bounds))
+    }
+
+    fn rows_in(&self, bounds: Box3) -> Result<ModelRows, RemoteError> {
         let region = self.pruner.region(bounds)?;
         let selection = region.selection();
         let program = self.pruner.program();
@@ -128,6 +136,9 @@ fn part_table(
     supports: Option<&std::sync::Arc<Vec<Support>>>,
 ) -> PartTable {
     let active = selection.active(table);
+    let width: usize = all.iter().map(|tables| tables.tables[table].stride).sum();
+    let each = size_of::<u32>() + (width + SUPPORT) * size_of::<f32>();
+    watch::take(active.len() * each + size_of_val(selection.starts(table)));
     let gather = |tables: &Tables| -> Vec<f32> {
         let rows = &tables.tables[table];
         active.iter().flat_map(|&row| rows.row(row as usize)).copied().collect()
@@ -259,21 +270,20 @@ impl ModelRows {
     /// Where the bytes are no rows of this version; want of memory.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FormatError> {
         let mut reader = ByteReader::new(bytes, WORD, VERSION)?;
-        reader.afford(1)?;
         let (shape, uses) = (reader.u64()?, reader.u64()?);
         let mut sides = [0.0; 6];
         for side in &mut sides {
             *side = reader.f32()?;
         }
         let [a, b, c, d, e, f] = sides;
-        let mut tables = Vec::new();
-        for _ in 0..reader.count(32)? {
+        let (count, mut tables) = reader.list(32)?;
+        for _ in 0..count {
             let (starts, whole, supports) = (reader.u32s()?, reader.u32s()?, reader.f32s()?);
             if !supports.is_empty() && whole.len().checked_mul(SUPPORT) != Some(supports.len()) {
                 return Err(reader.error("each row needs a support"));
             }
-            let mut numbers: Vec<PartNumbers> = Vec::new();
-            for _ in 0..reader.count(5)? {
+            let (count, mut numbers) = reader.list(5)?;
+            for _ in 0..count {
                 let own = !reader.flag()?;
                 if own {
                     numbers.push(PartNumbers::Own(reader.f32s()?));

@@ -59,6 +59,11 @@ impl LeafMask {
         self.0[offset >> 6] |= 1 << (offset & 63);
     }
 
+    /// How many points it has.
+    pub(super) fn count(&self) -> usize {
+        self.0.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.0 == [0; 8]
     }

@@ -167,10 +167,11 @@ impl VdbGrid {
         place: u64,
     ) -> Vec<u8> {
         let width = self.planes.len();
-        // Bytes grow by doubling; masks and values of a leaf, and its part of the topology.
-        let values: usize = leaves.values().map(|leaf| size_of_val(&*leaf.values)).sum();
-        watch::take(3 * (values + leaves.len() * size_of::<(VdbPlace, [LeafMask; 3])>()));
-        let mut bytes = Vec::new();
+        // Masks and values of the leaves and two lists of their places; nodes are few and grow by themselves.
+        let active: usize = leaves.values().map(|leaf| leaf.active.count()).sum();
+        let values = 4 * width * active + leaves.len() * (size_of::<[LeafMask; 3]>() + 1);
+        watch::take(values + leaves.len() * 2 * size_of::<VdbPlace>());
+        let mut bytes = Vec::with_capacity(values);
         push_text(&mut bytes, &self.name);
         push_text(&mut bytes, if width == 1 { "Tree_float_5_4_3" } else { "Tree_vec3s_5_4_3" });
         push_text(&mut bytes, "");
@@ -292,6 +293,7 @@ fn push_node(
     inside: impl Iterator<Item = usize>,
 ) {
     let size = (1 << (3 * side)) / 8;
+    watch::take_for(bytes, 3 * size);
     let start = bytes.len();
     bytes.resize(start + 2 * size, 0);
     for child in children {

@@ -130,6 +130,7 @@ fn line_up(function: &Function) -> Vec<Event> {
     // The blocks that are being walked: what is left of each, and the fold that it is the body of.
     let mut open = vec![(function.blocks[function.body].insts.iter(), None)];
     while let Some((insts, of)) = open.last_mut() {
+        look();
         match insts.next() {
             Some(&inst) => match &function.insts[inst].kind {
                 InstKind::Fold(fold) => {

@@ -121,13 +121,13 @@ pub fn join_blocks(blocks: &[MeshBlock]) -> Result<Mesh, BlockError> {
         return Err(BlockError::TooManyVertices { vertices });
     }
     let Some(&model) = order.first() else { return Ok(Mesh::default()) };
+    if let Some(other) = order.iter().find(|block| !are_alike(&model.mesh, &block.mesh)) {
+        return Err(BlockError::Model { place: other.place });
+    }
     memory::probe(order.iter().map(|block| joined_bytes(block)).sum())?;
     let mut names: FxHashMap<VertexName, u32> = FxHashMap::default();
     let mut mesh = begun(&model.mesh, vertices as usize, &order);
     for block in &order {
-        if !are_alike(&model.mesh, &block.mesh) {
-            return Err(BlockError::Model { place: block.place });
-        }
         let first = mesh.positions.len() as u32;
         names.extend(block.seams.iter().map(|&(name, vertex)| (name, first + vertex)));
         mesh.positions.extend_from_slice(&block.mesh.positions);
