@@ -90,7 +90,7 @@ const WORKS: [(&str, usize, Make); 23] = [
     ("text", 140, nodes),
     ("table", 100, table),
     ("files", 100, files),
-    ("division", 60, division),
+    ("division", 45, division),
     ("blocks of a mesh", 80, mesh_blocks),
     ("grids", 110, grids),
     ("distributed rows", 70, distributed),
@@ -459,7 +459,7 @@ fn table(small: bool) -> Work {
 /// What a caller does with a pruner himself: he divides space in halves, as finely as he likes, divides it
 /// again after an edit, and keeps regions.
 fn division(small: bool) -> Work {
-    let count = if small { 10 } else { 20_000 };
+    let count = if small { 10 } else { 4_000 };
     let balls = |count: usize| {
         let mut rng = Rng::with_seed(1);
         let places: Vec<[f32; 3]> = (0..count).map(|_| std::array::from_fn(|_| rng.f32())).collect();
